@@ -4,38 +4,66 @@
 with document objects inside FreeCAD. Units: millimetre, newton, second, megapascal.
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from .base import messages
+from .base.kinds import Context, Json
 from .base.resources import documentation, resources
+from .geometry import body_names
 from .gui.common import command_registry
-from .objects import view_providers
+from .objects import DOCUMENT_FUNCTIONS, view_providers
+
+if TYPE_CHECKING:
+    from .engine import core
+    from .planning.rounds import Plan
+    from .simulation.result import Result
+    from .studies.making import Study
+    from .studies.sorting import Batch
 
 # Taken from the core when first asked for: without a core that fits, the workbench must still be able
 # to say so.
 ENGINE_NAMES = ("core", "InputError", "Cancelled", "RunContext", "__version__")
 
+Job: TypeAlias = "dict[str, Any] | Path | str"  # or a study: itself, or the path of its file
 
-def run(job, context=None, recording=None):
-    """Runs a job (a dict, or the path of a job.json); returns a ``job.Result``. ``recording``: as in
-    ``job.run``.
+
+def _checked(job: Job) -> dict[str, Any]:
+    """A job with its defaults, of a dict or of the path of a job.json. Raises InputError."""
+    from .job import load
+
+    return load.validate(job) if isinstance(job, dict) else load.load(job)
+
+
+def run(job: Job, context: Context = None, recording: core.Recording | None = None) -> Result:
+    """Runs a job (a dict, or the path of a job.json); returns a ``simulation.result.Result``.
+    ``recording``: as in ``simulation.run.run``.
     """
-    from .job import load as jobs
     from .simulation import run as runs
 
-    job = jobs.validate(job) if isinstance(job, dict) else jobs.load(job)
-    return runs.run(job, context, recording)
+    return runs.run(_checked(job), context, recording)
 
 
-def plan(job, settings=None, context=None, told=None):
+def plan(
+    job: Job,
+    settings: Json | None = None,
+    context: Context = None,
+    told: Callable[[dict[str, Any]], object] | None = None,
+) -> Plan:
     """Plans the feeds of a job (a dict, or the path of a job.json) so that the ground part keeps its tolerance; see
     ``planning.plan``.
     """
-    from .job import load as jobs
     from .planning import rounds as plans
 
-    job = jobs.validate(job) if isinstance(job, dict) else jobs.load(job)
-    return plans.plan(job, settings, context, told)
+    return plans.plan(_checked(job), settings, context, told)
 
 
-def study(study, output=None, context=None, **options):
+def study(
+    study: Job, output: Path | str | None = None, context: Context = None, **options: Any
+) -> Study:
     """Makes the runs of a study (a dict, or the path of a study.json) and returns a ``studies.Study`` with their table; see
     ``studies.making.study``.
     """
@@ -44,7 +72,9 @@ def study(study, output=None, context=None, **options):
     return making.study(study, output, context, **options)
 
 
-def study_answers(folder, language="en", context=None):
+def study_answers(
+    folder: Path | str, language: str = "en", context: Context = None
+) -> dict[str, Any]:
     """Writes the answers of a study that lies in a folder (answers.json, report.html, pictures) and returns them; see
     ``studies.report.write_answers``."""
     from .studies import report as reports
@@ -52,44 +82,61 @@ def study_answers(folder, language="en", context=None):
     return reports.write_answers(folder, language, context)
 
 
-def sort_castings(job, scans, folder=None, **options):
+def sort_castings(
+    job: Job, scans: Iterable[Path | str], folder: Path | str | None = None, **options: Any
+) -> Batch:
     """Sorts raw parts by their scans: passes, passes with a plan of its own, scrap. ``job``: a dict, or the path of a
     job.json; see ``studies.sorting.sort``."""
-    from .job import load as jobs
     from .studies import sorting
 
-    job = jobs.validate(job) if isinstance(job, dict) else jobs.load(job)
-    return sorting.sort(job, scans, folder, **options)
+    return sorting.sort(_checked(job), scans, folder, **options)
 
 
-def report(result, output=None, pdf=None, language="en", title=None, context=None):
+def report(
+    result: Result | Path | str,
+    output: Path | str | None = None,
+    pdf: Path | str | None = None,
+    language: str = "en",
+    title: str | None = None,
+    context: Context = None,
+) -> Path:
     """Writes the report of a result as one HTML file; see ``reporting.report``."""
     from .reporting import report as reporting
 
     return reporting.report(result, output, pdf, language, title, context)
 
 
-def view(result, output=None, language="en", title=None, context=None):
+def view(
+    result: Result | Path | str,
+    output: Path | str | None = None,
+    language: str = "en",
+    title: str | None = None,
+    context: Context = None,
+) -> Path:
     """Writes the 3D view of a result as one HTML file; see ``reporting.view_page.view``."""
     from .reporting import view_page
 
     return view_page.view(result, output, language, title, context)
 
 
-def converge(job, context=None):
+def converge(job: Job, context: Context = None) -> Result:
     """Runs a job (a dict, or the path of a job.json) coarser, as given and finer; returns its
-    ``job.Result`` with ``convergence``; see ``convergence.converge``.
+    ``simulation.result.Result`` with ``convergence``; see ``simulation.convergence.converge``.
     """
-    from .job import load as jobs
     from .simulation import convergence
 
-    job = jobs.validate(job) if isinstance(job, dict) else jobs.load(job)
-    return convergence.converge(job, context)
+    return convergence.converge(_checked(job), context)
 
 
-def ground_mesh(result, path=None, ground=True, deflection_mm=None, context=None):
+def ground_mesh(
+    result: Result | Path | str,
+    path: Path | str | None = None,
+    ground: bool = True,
+    deflection_mm: float | None = None,
+    context: Context = None,
+) -> core.GroundMesh:
     """The whole part as ground, as one closed mesh (``closed_mesh.ground_mesh``); written to
-    ``path`` (.stl, .ply, .3mf) if there is one. result: a ``job.Result`` or its folder.
+    ``path`` (.stl, .ply, .3mf) if there is one. result: a ``simulation.result.Result`` or its folder.
     """
     from .inspection import closed_mesh
     from .job.tolerances import colour_scale
@@ -103,43 +150,7 @@ def ground_mesh(result, path=None, ground=True, deflection_mm=None, context=None
     return mesh
 
 
-# What a macro calls inside FreeCAD: document objects (beltgrinding.objects.api).
-DOCUMENT_FUNCTIONS = (
-    "make_job",
-    "make_stock",
-    "lay_stock",
-    "make_belt_machine",
-    "make_belt",
-    "wear_belt",
-    "follow_path",
-    "import_program",
-    "export_program",
-    "make_raster",
-    "set_up",
-    "simulate",
-    "make_plan",
-    "apply_plan",
-    "write_plan",
-    "make_study",
-    "open_study_run",
-    "make_deviation",
-    "make_section",
-    "make_verdict",
-    "set_zones",
-    "make_figures",
-    "write_report",
-    "check_settings",
-    "export_job",
-    "import_result",
-    "open_example",
-    "open_job",
-    "make_ground_mesh",
-    "compare_scan",
-    "learn_scan",
-)
-
-
-def __getattr__(name):
+def __getattr__(name: str) -> Any:
     if name in ENGINE_NAMES:
         from . import engine
 
@@ -157,7 +168,7 @@ def __getattr__(name):
     return getattr(api, name)
 
 
-def __dir__():
+def __dir__() -> list[str]:
     return sorted({*globals(), *ENGINE_NAMES, *DOCUMENT_FUNCTIONS})
 
 
@@ -165,17 +176,18 @@ def __dir__():
 # for no module of the package is imported before this one.
 
 
-def _attach_view(view_object, name):
+def _attach_view(view_object: object, name: str) -> None:
     from .gui.views import providers
 
     getattr(providers, name)(view_object)
 
 
-def _register_commands():
+def _register_commands() -> None:
     from .gui import commands
 
     commands.register()
 
 
+messages.name_bodies(body_names.told)
 view_providers.factory = _attach_view
 command_registry.register = _register_commands

@@ -1,5 +1,7 @@
 """Files that are written whole or not at all; and errors of files and of the keys in them."""
 
+from __future__ import annotations
+
 import collections
 import contextlib
 import errno
@@ -11,18 +13,22 @@ import signal
 import threading
 import time
 import uuid
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 from .. import engine
+
+Data = bytes | Callable[[int], object]  # what `write_to` takes
 
 PART = ".beltgrind-part-"  # what is not whole yet; not NAME and more, which may be too long a name
 LEFT_OVER = 3600.0  # s; a part of that age is a killed writer's
 CHUNK = 1 << 20  # bytes, read at a time
-_written = collections.deque(maxlen=1)
-_begun = set()  # files and folders that are not to outlast this process
+_written: collections.deque[Path] = collections.deque(maxlen=1)
+_begun: set[Path] = set()  # files and folders that are not to outlast this process
 
 
-def write_whole(path, data):
+def write_whole(path: Path, data: bytes) -> None:
     """Writes bytes to ``path``, whole or not at all, and onto the disk. Raises OSError."""
     path = Path(os.path.realpath(path))  # a link stays one
     if path.exists() and not path.is_file():
@@ -47,7 +53,7 @@ def write_whole(path, data):
             end(part)
 
 
-def _remove_parts(folder):
+def _remove_parts(folder: Path) -> None:
     """What killed writers could not tidy up themselves."""
     with contextlib.suppress(OSError):
         for entry in os.scandir(folder):
@@ -57,7 +63,7 @@ def _remove_parts(folder):
                         os.unlink(entry.path)
 
 
-def write_new(path, data, onto_disk=True):
+def write_new(path: Path, data: Data, onto_disk: bool = True) -> None:
     """Writes ``data`` (see ``write_to``) to a file that is not there yet; ``onto_disk``: so that they outlast a power
     failure. Raises OSError, and what ``data`` raises."""
     number = os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666)
@@ -67,7 +73,7 @@ def write_new(path, data, onto_disk=True):
             os.fsync(number)
 
 
-def write_to(number, data):
+def write_to(number: int, data: Data) -> None:
     """Writes bytes, or what ``data(number)`` writes, to an open, empty file by its descriptor. Raises OSError, and
     what ``data`` raises."""
     if callable(data):
@@ -78,7 +84,7 @@ def write_to(number, data):
         left = left[os.write(number, left) :]
 
 
-def sum_of(number):
+def sum_of(number: int) -> dict[str, int | str]:
     """{"bytes", "sha256"} of all of an open file, by its descriptor. Raises OSError."""
     found, size = hashlib.sha256(), 0
     while data := os.pread(number, CHUNK, size):
@@ -88,7 +94,7 @@ def sum_of(number):
 
 
 @contextlib.contextmanager
-def interruptible():
+def interruptible() -> Iterator[None]:
     """Makes Ctrl-C a KeyboardInterrupt where it would end the process at once (``cli.interrupts``): there
     is something to be tidied up."""
     before = signal.getsignal(signal.SIGINT)
@@ -106,18 +112,18 @@ def interruptible():
         signal.signal(signal.SIGINT, before)
 
 
-def begin(path):
+def begin(path: Path) -> None:
     """Notes, before it is made, what is to go whatever happens: an interruption may come between its making and
     the ``try`` that would remove it, or while it is removed."""
     _begun.add(path)
 
 
-def end(path):
+def end(path: Path) -> None:
     """It is gone, or has its place."""
     _begun.discard(path)
 
 
-def tidy():
+def tidy() -> None:
     """Removes what was begun and has not ended."""
     for path in list(_begun):
         with contextlib.suppress(OSError):
@@ -125,19 +131,19 @@ def tidy():
         end(path)
 
 
-def remove_tree(path):
+def remove_tree(path: Path) -> None:
     """Removes a folder as far as that goes. Ctrl-C waits: in the midst of ``shutil.rmtree`` (3.11) it has a
     descriptor closed twice, and the error of that takes its place."""
     with uninterrupted():
         shutil.rmtree(path, ignore_errors=True)
 
 
-def _in_main_thread():
+def _in_main_thread() -> bool:
     return threading.current_thread() is threading.main_thread()
 
 
 @contextlib.contextmanager
-def uninterrupted():
+def uninterrupted() -> Iterator[None]:
     """Lets Ctrl-C wait until its end; in other threads than the main one it never comes."""
     if not _in_main_thread():
         yield
@@ -156,17 +162,17 @@ def uninterrupted():
             before(*came[0])
 
 
-def written(path):
+def written(path: Path) -> None:
     """Notes that something was written there: who is interrupted can say so."""
     _written.append(path)
 
 
-def last_written():
+def last_written() -> Path | None:
     """The path noted last, None where nothing was."""
     return _written[-1] if _written else None
 
 
-def absolute(folder, name):
+def absolute(folder: Path | str, name: Path | str) -> str:
     """The path of a file that is named relative to ``folder``, without links. Raises InputError for a name
     that no file can have."""
     try:
@@ -179,19 +185,21 @@ def absolute(folder, name):
     return path
 
 
-def json_bytes(data):
+def json_bytes(data: Any) -> bytes:
     return (json.dumps(data, indent=2, allow_nan=False) + "\n").encode()
 
 
-def cannot_be_read(path, error):
-    """The InputError of an OSError or UnicodeDecodeError while reading a file."""
+def cannot_be_read(
+    path: Path | str, error: OSError | ValueError | RecursionError
+) -> engine.InputError:
+    """The InputError of an OSError while reading a file, or of what it holds."""
     reason = reason_of(error)
     return engine.InputError(
         "files.cannot_be_read", "{file}: cannot be read: {reason}", file=path, reason=reason
     )
 
 
-def cannot_be_written(path, error):
+def cannot_be_written(path: Path | str, error: OSError) -> engine.InputError:
     """The InputError of an OSError while writing a file or a folder."""
     reason = reason_of(error)
     return engine.InputError(
@@ -199,7 +207,7 @@ def cannot_be_written(path, error):
     )
 
 
-def reason_of(error):
+def reason_of(error: Exception) -> str:
     """What the system says, as a fact where it is a usual one."""
     if isinstance(error, UnicodeDecodeError):
         return engine.core.Fact("files.no_utf8", "it is not UTF-8 text")
@@ -215,23 +223,23 @@ def reason_of(error):
         errno.EDQUOT: engine.core.Fact("files.quota", "Disk quota exceeded"),
         errno.EEXIST: engine.core.Fact("files.exists", "File exists"),
     }
-    known = usual.get(getattr(error, "errno", None))
+    known = usual.get(getattr(error, "errno", None) or 0)
     return known or getattr(error, "strerror", None) or str(error)
 
 
-def in_file(error, path):
+def in_file(error: engine.InputError, path: Path | str) -> engine.InputError:
     """The InputError with its file before it, unless it names one already."""
     if "file" in error.culprit:
         return error
     return error.within("files.in_file", "{file}: ", file=path)
 
 
-def at_key(error, key):
+def at_key(error: engine.InputError, key: str) -> engine.InputError:
     """The InputError with the key before it whose value it is about."""
     return error.within("files.at_key", "{key}: ", key=key)
 
 
-def either(*keys):
+def either(*keys: str) -> str:
     """What to choose from: 'a' or 'b', as a fact."""
     told = f"'{keys[0]}'"
     for key in keys[1:]:

@@ -10,6 +10,8 @@ What is new is written whole into a *stage*, a folder of its own, and onto the d
 A lock (flock on the folder) keeps writers and readers apart, through all processes of a machine.
 """
 
+from __future__ import annotations
+
 import contextlib
 import ctypes
 import errno
@@ -20,11 +22,14 @@ import shutil
 import stat
 import time
 import uuid
+from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path
 
 from ..engine import InputError
+from .files import Data, begin, end, interruptible, remove_tree, uninterrupted, write_new, written
 from .files import PART as STAGE
-from .files import begin, end, interruptible, remove_tree, uninterrupted, write_new, written
+
+Contents = Mapping[str, Data]  # by file name
 
 JOURNAL = ".beltgrind-ready-"  # whole, and decided: to be ended
 MANIFEST = ".manifest.json"
@@ -34,7 +39,9 @@ NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.EINVAL)  # of a 
 RENAME_EXCHANGE, AT_FDCWD = 2, -100
 
 
-def replace(folder, contents, look=None):
+def replace(
+    folder: Path, contents: Contents, look: Callable[[Path], Collection[str] | None] | None = None
+) -> None:
     """Writes ``contents`` (by file name, as ``files.write_to`` takes them; perhaps twice, one after the other) into
     ``folder``, all of it or nothing. The folder is made where it is not; its other files stay. ``look(folder)`` is called under the lock, after what another
     had begun is ended; it may raise, or return the names of files to be removed. Ctrl-C comes before the
@@ -45,7 +52,9 @@ def replace(folder, contents, look=None):
         _replace(folder, contents, look)
 
 
-def _replace(folder, contents, look):
+def _replace(
+    folder: Path, contents: Contents, look: Callable[[Path], Collection[str] | None] | None
+) -> None:
     made = _make(folder)
     try:
         with _locked(folder, fcntl.LOCK_EX):
@@ -64,7 +73,7 @@ def _replace(folder, contents, look):
 
 
 @contextlib.contextmanager
-def reading(folder):
+def reading(folder: Path) -> Iterator[None]:
     """While it lasts nobody replaces the folder's files through this module. Raises OSError, InputError."""
     folder = Path(os.path.realpath(folder))
     if any(_named(folder, JOURNAL)):
@@ -74,7 +83,7 @@ def reading(folder):
         yield
 
 
-def _make(folder):
+def _make(folder: Path) -> list[Path]:
     """The folders that were made, the innermost first."""
     made, path = [], folder
     while not path.exists() and path != path.parent:
@@ -85,7 +94,7 @@ def _make(folder):
 
 
 @contextlib.contextmanager
-def _locked(folder, kind):
+def _locked(folder: Path, kind: int) -> Iterator[None]:
     """Holds the folder, the one that has the name now: it may have changed places while we waited."""
     end = time.monotonic() + WAIT
     while True:
@@ -99,7 +108,7 @@ def _locked(folder, kind):
             os.close(held)
 
 
-def _lock(held, kind, folder, end):
+def _lock(held: int, kind: int, folder: Path, end: float) -> None:
     while True:
         try:
             fcntl.flock(held, kind | fcntl.LOCK_NB)
@@ -118,7 +127,7 @@ def _lock(held, kind, folder, end):
             return  # better without than not at all: what is written is whole all the same
 
 
-def _replace_by_exchange(folder, contents, gone):
+def _replace_by_exchange(folder: Path, contents: Contents, gone: Collection[str]) -> bool:
     """False where it cannot be done; everything is then as it was."""
     if not _may_change_places(folder):
         return False
@@ -148,7 +157,7 @@ def _replace_by_exchange(folder, contents, gone):
     return True
 
 
-def _may_change_places(folder):
+def _may_change_places(folder: Path) -> bool:
     try:
         if os.path.ismount(folder) or not os.access(folder.parent, os.W_OK | os.X_OK):
             return False
@@ -161,7 +170,7 @@ def _may_change_places(folder):
     return not _is_working_folder(folder)
 
 
-def _is_working_folder(folder):
+def _is_working_folder(folder: Path) -> bool:
     """Whether a process that we may look at works in it: it would find itself in a folder that is gone."""
     about = folder.stat()
     for process in os.scandir("/proc") if os.path.isdir("/proc/self") else ():
@@ -172,7 +181,7 @@ def _is_working_folder(folder):
     return False
 
 
-def _keep_later(old, folder, taken):
+def _keep_later(old: Path, folder: Path, taken: Collection[str]) -> None:
     """What somebody put into the old folder after it was looked through is not thrown away."""
     for entry in os.scandir(old):
         place = folder / entry.name
@@ -180,9 +189,9 @@ def _keep_later(old, folder, taken):
             os.rename(entry.path, place)
 
 
-def _replace_by_journal(folder, contents, gone):
+def _replace_by_journal(folder: Path, contents: Contents, gone: Collection[str]) -> None:
     _remove_stages(folder)
-    manifest = json.dumps({"files": list(contents), "gone": list(gone)}).encode()
+    manifest = json.dumps({"files": list(contents), "gone": list(gone)}, allow_nan=False).encode()
     with _stage(folder) as stage:
         _write_all(stage, {**contents, MANIFEST: manifest})
         with uninterrupted():
@@ -192,10 +201,10 @@ def _replace_by_journal(folder, contents, gone):
             _end_journals(folder)
 
 
-def _end_journals(folder):
+def _end_journals(folder: Path) -> None:
     for journal in _named(folder, JOURNAL):
         try:
-            manifest = json.loads((journal / MANIFEST).read_bytes())
+            manifest = _manifest(journal / MANIFEST)
         except FileNotFoundError:
             manifest = {"files": [], "gone": []}  # it was being removed
         for name in manifest["files"]:
@@ -208,8 +217,29 @@ def _end_journals(folder):
             shutil.rmtree(journal)  # to be told of: else it would be ended a second time
 
 
+def _manifest(path: Path) -> dict[str, list[str]]:
+    """{"files", "gone"}: names. Raises FileNotFoundError, and InputError for what is damaged."""
+    try:
+        found: dict[str, list[str]] = json.loads(path.read_bytes())
+        lists = [found[name] for name in ("files", "gone")]
+        sound = all(type(one) is list for one in lists) and all(
+            isinstance(name, str) and name == Path(name).name for one in lists for name in one
+        )
+    except (ValueError, KeyError, TypeError, RecursionError):
+        sound = False
+    if not sound:
+        raise InputError(
+            "base.journal",
+            "{file}: the result was being replaced, and what is left of that is damaged; remove {folder} and run the "
+            "job again",
+            file=path,
+            folder=path.parent,
+        )
+    return found
+
+
 @contextlib.contextmanager
-def _stage(parent):
+def _stage(parent: Path) -> Iterator[Path]:
     """A new folder that is held as long as it is made; what is left of it in the end goes."""
     path = parent / (STAGE + uuid.uuid4().hex)
     begin(path)
@@ -227,7 +257,7 @@ def _stage(parent):
         end(path)
 
 
-def _remove_stages(parent):
+def _remove_stages(parent: Path) -> None:
     """What killed writers could not tidy up themselves."""
     for stage in _named(parent, STAGE):
         with contextlib.suppress(OSError):
@@ -240,20 +270,20 @@ def _remove_stages(parent):
                 os.close(held)
 
 
-def _named(folder, prefix):
+def _named(folder: Path, prefix: str) -> list[Path]:
     try:
         return sorted(folder / e.name for e in os.scandir(folder) if e.name.startswith(prefix))
     except FileNotFoundError:
         return []
 
 
-def _write_all(folder, contents):
+def _write_all(folder: Path, contents: Contents) -> None:
     for name, data in contents.items():
         write_new(folder / name, data)
     _sync_folder(folder)
 
 
-def _exchange(one, other):
+def _exchange(one: Path, other: Path) -> None:
     libc = ctypes.CDLL(None, use_errno=True)
     call = getattr(libc, "renameat2", None)
     if call is None:
@@ -263,7 +293,7 @@ def _exchange(one, other):
         raise OSError(error, os.strerror(error))
 
 
-def _sync_folder(folder):
+def _sync_folder(folder: Path) -> None:
     """Its names, onto the disk. Some file systems know no such thing."""
     with contextlib.suppress(OSError):
         held = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)

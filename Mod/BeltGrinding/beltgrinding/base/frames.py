@@ -1,21 +1,30 @@
 """Rigid transforms as 4 x 4 numpy arrays, named a_from_b; mm."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Iterable, Mapping
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from ..engine import InputError
 
 QUATERNION_TOLERANCE = 1e-3  # off unit length by more is a mistake, not rounding
 
 
-def from_quaternion(position, quaternion):
+def from_quaternion(position: ArrayLike, quaternion: ArrayLike) -> NDArray[np.float64]:
     """4 x 4 from a position (3,) in mm and a quaternion w, x, y, z. Raises InputError."""
     position = np.asarray(position, dtype=float).reshape(1, 3)
-    return from_quaternions(position, np.asarray(quaternion, dtype=float).reshape(1, 4))[0]
+    frames = from_quaternions(position, np.asarray(quaternion, dtype=float).reshape(1, 4))
+    frame: NDArray[np.float64] = frames[0]
+    return frame
 
 
-def from_quaternions(positions, quaternions):
+def from_quaternions(
+    positions: NDArray[np.float64], quaternions: NDArray[np.float64]
+) -> NDArray[np.float64]:
     """(n, 4, 4) from positions (n, 3) in mm and quaternions (n, 4) w, x, y, z.
 
     Raises InputError naming the first pose (from 1) that is not finite or not of unit length.
@@ -54,7 +63,7 @@ def from_quaternions(positions, quaternions):
     return frames
 
 
-def to_quaternions(rotations):
+def to_quaternions(rotations: ArrayLike) -> NDArray[np.float64]:
     """Unit quaternions (n, 4) w, x, y, z with w >= 0 of rotations (n, 3, 3), each by its largest
     component (Shepperd 1978)."""
     r = np.asarray(rotations, dtype=float)
@@ -73,20 +82,20 @@ def to_quaternions(rotations):
     )
     quaternions = rows[np.arange(len(r)), np.argmax(squares, axis=1)]
     quaternions /= np.linalg.norm(quaternions, axis=1)[:, None]
-    return np.where(quaternions[:, :1] < 0, -quaternions, quaternions)
+    return np.asarray(np.where(quaternions[:, :1] < 0, -quaternions, quaternions))
 
 
-def rotation_vectors(rotations):
+def rotation_vectors(rotations: ArrayLike) -> NDArray[np.float64]:
     """(n, 3) axis times angle in radian, 0 to pi, of rotations (n, 3, 3)."""
     quaternions = to_quaternions(rotations)
     sines = np.linalg.norm(quaternions[:, 1:], axis=1)
     angles = 2.0 * np.arctan2(sines, quaternions[:, 0])
     # 2 is the limit of angle / sine for a small turn.
     factors = np.divide(angles, sines, out=np.full(len(sines), 2.0), where=sines > 1e-12)
-    return quaternions[:, 1:] * factors[:, None]
+    return np.asarray(quaternions[:, 1:] * factors[:, None])
 
 
-def from_abc(position, abc_deg):
+def from_abc(position: Iterable[float], abc_deg: Iterable[float]) -> NDArray[np.float64]:
     """4 x 4 from a position in mm and KUKA's A, B, C in degrees: Rz(A) Ry(B) Rx(C)."""
     a, b, c = (math.radians(angle) for angle in abc_deg)
     ca, sa, cb, sb, cc, sc = (f(v) for v in (a, b, c) for f in (math.cos, math.sin))
@@ -102,7 +111,7 @@ def from_abc(position, abc_deg):
     )
 
 
-def to_abc(frame):
+def to_abc(frame: ArrayLike) -> tuple[float, ...]:
     """KUKA's A, B, C in degrees of a 4 x 4; at B = +-90 degrees C is 0."""
     r = np.asarray(frame)[:3, :3]
     horizontal = math.hypot(r[0, 0], r[1, 0])
@@ -114,13 +123,13 @@ def to_abc(frame):
     return tuple(math.degrees(angle) for angle in (a, b, c))
 
 
-def in_words(frame):
+def in_words(frame: NDArray[np.float64]) -> str:
     """A 4 x 4 as programs tell it: X, Y, Z in mm, A, B, C in degrees."""
     values = [*np.round(frame[:3, 3], 6), *np.round(to_abc(frame), 7)]
     return " ".join(f"{k} {v + 0.0:.10g}" for k, v in zip("XYZABC", values))
 
 
-def from_data(data):
+def from_data(data: Mapping[str, Any] | None) -> NDArray[np.float64]:
     """4 x 4 from a job file's frame; missing (None) is the identity. Raises InputError."""
     if not data:
         return np.eye(4)
@@ -133,18 +142,30 @@ def from_data(data):
 
 
 def base_from_tcp(
-    work_from_contact, holding, base_from_work, tcp_from_contact, tcp_from_work, base_from_contact
-):
+    work_from_contact: NDArray[np.float64],
+    holding: str,
+    base_from_work: NDArray[np.float64],
+    tcp_from_contact: NDArray[np.float64],
+    tcp_from_work: NDArray[np.float64],
+    base_from_contact: NDArray[np.float64],
+) -> NDArray[np.float64]:
     """(n, 4, 4) tool frames at which the contact frame lies at (n, 4, 4) ``work_from_contact``: the
     cell's equations solved for the robot's pose."""
     if holding == "tool_in_hand":
-        return base_from_work @ work_from_contact @ np.linalg.inv(tcp_from_contact)
-    return base_from_contact @ np.linalg.inv(work_from_contact) @ np.linalg.inv(tcp_from_work)
+        found = base_from_work @ work_from_contact @ np.linalg.inv(tcp_from_contact)
+    else:
+        found = base_from_contact @ np.linalg.inv(work_from_contact) @ np.linalg.inv(tcp_from_work)
+    return np.asarray(found)
 
 
 def work_from_frames(
-    base_from_tcp, holding, base_from_work, tcp_from_contact, tcp_from_work, base_from_contact
-):
+    base_from_tcp: NDArray[np.float64],
+    holding: str,
+    base_from_work: NDArray[np.float64],
+    tcp_from_contact: NDArray[np.float64],
+    tcp_from_work: NDArray[np.float64],
+    base_from_contact: NDArray[np.float64],
+) -> dict[str, NDArray[np.float64]]:
     """{frame: (..., 4, 4) work_from_frame} of base, tool (TCP), contact and part (the work itself)
     with the robot at (..., 4, 4) ``base_from_tcp``: the same equations forwards."""
     if holding == "tool_in_hand":

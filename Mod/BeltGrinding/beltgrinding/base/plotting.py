@@ -1,6 +1,9 @@
 """Pictures by matplotlib, without a window."""
 
+from __future__ import annotations
+
 import io
+from typing import Any
 
 from .. import engine
 
@@ -9,7 +12,7 @@ GREEN, RED = "#2f7d46", "#b3261e"  # passed, failed
 GRID = "#e3e5e8"
 
 
-def figure(width, height):
+def figure(width: float, height: float) -> Any:
     """An empty matplotlib Figure, inches. Raises InputError without matplotlib."""
     try:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -23,7 +26,7 @@ def figure(width, height):
     return made
 
 
-def saved(drawn, kind="png", dpi=110):
+def saved(drawn: Any, kind: str = "png", dpi: float = 110) -> bytes:
     """The bytes of a file ("png", "svg" or "pdf") of a Figure."""
     target = io.BytesIO()
     # Who made it: such a file may be written over.
@@ -32,7 +35,7 @@ def saved(drawn, kind="png", dpi=110):
     return target.getvalue()
 
 
-def grid(axes, axis="both"):
+def grid(axes: Any, axis: str = "both") -> None:
     """Thin lines behind what is drawn."""
     axes.grid(True, color=GRID, lw=0.6, axis=axis)
     axes.set_axisbelow(True)

@@ -3,9 +3,13 @@
 A FIFO or a device in a file's place would be read for ever, or never.
 """
 
+from __future__ import annotations
+
 import errno
 import os
 import stat
+from pathlib import Path
+from typing import BinaryIO
 
 from ..engine import InputError, core
 from .files import cannot_be_read
@@ -19,12 +23,12 @@ KINDS = (
 )
 
 
-def shown(path):
+def shown(path: Path | str) -> str:
     """A path as text that can be written in UTF-8: bytes of its name that are none as \\udcff."""
     return str(path).encode("utf-8", "backslashreplace").decode("utf-8")
 
 
-def open_regular(path, limit):
+def open_regular(path: Path | str, limit: int) -> BinaryIO:
     """A regular file, opened to be read as bytes. Raises InputError where there is none, or where it
     is larger than ``limit`` bytes.
     """
@@ -41,8 +45,8 @@ def open_regular(path, limit):
     try:
         state = os.fstat(descriptor)
         if stat.S_ISDIR(state.st_mode):
-            error = IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
-            raise cannot_be_read(shown(path), error)
+            folder = IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+            raise cannot_be_read(shown(path), folder)
         if not stat.S_ISREG(state.st_mode):
             raise InputError(
                 "files.not_regular",
@@ -68,7 +72,7 @@ def open_regular(path, limit):
 _BINARY = getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
 
 
-def read_regular(path, limit):
+def read_regular(path: Path | str, limit: int) -> bytes:
     """The bytes of a regular file. Raises InputError as ``open_regular``."""
     with open_regular(path, limit) as file:
         try:
@@ -77,7 +81,7 @@ def read_regular(path, limit):
             raise cannot_be_read(shown(path), error) from None
 
 
-def _kind(mode):
+def _kind(mode: int) -> core.Fact:
     for is_kind, code, text in KINDS:
         if is_kind(mode):
             return core.Fact(code, text)

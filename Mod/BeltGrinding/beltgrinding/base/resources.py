@@ -1,5 +1,7 @@
 """Where the folders of a release lie, installed or in a checkout."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 
@@ -13,7 +15,7 @@ def documentation() -> Path:
     return _folder("docs")
 
 
-def _folder(name):
+def _folder(name: str) -> Path:
     package = Path(__file__).resolve().parents[1]
     for folder in (package.parent / name, package.parents[2] / name):
         if folder.is_dir():

@@ -1,6 +1,11 @@
 """What jsonschema finds wrong, as errors of ours that name the key."""
 
+from __future__ import annotations
+
 import difflib
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 from ..engine import InputError, core
 from .files import either
@@ -8,9 +13,9 @@ from .files import either
 MOST = 120  # characters of a value that are shown
 
 
-def explained(error, what):
+def explained(error: Any, what: str) -> InputError:
     """The InputError of a jsonschema error; ``what`` stands for the whole."""
-    where = ".".join(str(part) for part in error.absolute_path) or what
+    where = path_of(error.absolute_path, what)
     limit = error.validator_value
     if error.validator in MAKERS:
         return MAKERS[error.validator](error, where, limit)
@@ -20,17 +25,35 @@ def explained(error, what):
     return InputError("base.other", "{key}: {reason}", key=where, reason=error.message[:200])
 
 
-def _of(error, where, name):
+def path_of(way: Iterable[object], what: str) -> str:
+    """Write a path of keys and indices with dots; ``what`` stands for the empty path."""
+    return ".".join(str(part) for part in way) or what
+
+
+def not_finite(value: object, where: str) -> InputError:
+    """Make the InputError of a number that is NaN, infinite or too large for a double."""
+    return InputError(
+        "base.not_finite",
+        "{key}: {value} is no finite number",
+        key=where,
+        value=_shown(value),
+    )
+
+
+def _of(error: Any, where: str, name: str) -> str:
     """The path of a key inside of what the error is about."""
     return f"{where}.{name}" if error.absolute_path else name
 
 
-def _shown(value):
-    text = repr(value)
+def _shown(value: object) -> str:
+    try:
+        text = repr(value)
+    except ValueError:  # an integer of more digits than Python writes
+        text = "an integer of very many digits"
     return text if len(text) <= MOST else text[:MOST] + "..."
 
 
-def hint(name, known, quote="'"):
+def hint(name: str, known: Sequence[str], quote: str = "'") -> core.Fact:
     """Which of the names that are ``known`` was perhaps meant, or all of them, as a fact."""
     near = difflib.get_close_matches(name, known, 1)
     if near:
@@ -40,7 +63,7 @@ def hint(name, known, quote="'"):
     return core.Fact("base.known_are", "known are {names}", names=", ".join(known))
 
 
-def _unknown(error, where, _):
+def _unknown(error: Any, where: str, _: object) -> InputError:
     known = list(error.schema["properties"])
     name = next(key for key in error.instance if key not in known)
     return InputError(
@@ -53,7 +76,7 @@ def _unknown(error, where, _):
     )
 
 
-def _missing(error, where, required):
+def _missing(error: Any, where: str, required: Iterable[str]) -> InputError:
     name = next(key for key in required if key not in error.instance)
     return InputError(
         "base.missing_key",
@@ -64,14 +87,16 @@ def _missing(error, where, required):
     )
 
 
-def _one_of(error, where, rules):
+def _one_of(error: Any, where: str, rules: Iterable[Any]) -> InputError:
     choices = either(*(rule["required"][0] for rule in rules))
     return InputError(
         "base.exactly_one", "{key}: give exactly one of {choices}", key=where, choices=choices
     )
 
 
-def _type(error, where, kinds):
+def _type(error: Any, where: str, kinds: Any) -> InputError:
+    if isinstance(error.instance, float) and not math.isfinite(error.instance):
+        return not_finite(error.instance, where)
     names = {
         "array": core.Fact("base.array", "'array'"),
         "boolean": core.Fact("base.boolean", "'boolean'"),
@@ -94,7 +119,7 @@ def _type(error, where, kinds):
     )
 
 
-def _choice(error, where, allowed):
+def _choice(error: Any, where: str, allowed: Any) -> InputError:
     return InputError(
         "base.not_one_of",
         "{key}: {value} is not one of {allowed}",
@@ -104,7 +129,7 @@ def _choice(error, where, allowed):
     )
 
 
-def _const(error, where, expected):
+def _const(error: Any, where: str, expected: Any) -> InputError:
     return InputError(
         "base.expected", "{key}: {expected} was expected", key=where, expected=repr(expected)
     )
@@ -129,6 +154,10 @@ LIMITS = {
         "base.not_below_maximum",
         "{key}: {value} is greater than or equal to the maximum of {limit}",
     ),
+    "least": (
+        "base.below_least",
+        "{key}: {value} is too small; {limit} is the least but 0",
+    ),
     "minItems": (
         "base.too_few",
         "{key}: {value} is too short; it has at least {limit} items",
@@ -137,6 +166,14 @@ LIMITS = {
     "minLength": (
         "base.text_too_short",
         "{key}: {value} is too short; it has at least {limit} characters",
+    ),
+    "maxLength": (
+        "base.text_too_long",
+        "{key}: {value} is too long; it has at most {limit} characters",
+    ),
+    "maxProperties": (
+        "base.too_many_keys",
+        "{key}: it has too many keys; {limit} at most",
     ),
     "pattern": ("base.pattern", "{key}: {value} does not match '{limit}'"),
     "uniqueItems": ("base.not_unique", "{key}: {value} has non-unique elements"),

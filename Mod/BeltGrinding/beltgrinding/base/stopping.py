@@ -3,14 +3,21 @@
 What works step by step asks ``check`` at each; outside of ``stoppable`` that does nothing.
 """
 
+from __future__ import annotations
+
 import contextlib
 import threading
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ..engine import RunContext
 
 _here = threading.local()
 
 
 @contextlib.contextmanager
-def stoppable(context):
+def stoppable(context: RunContext) -> Iterator[None]:
     """In this thread, ``check`` raises Cancelled once the RunContext ``context`` is cancelled."""
     before = getattr(_here, "context", None)
     _here.context = context
@@ -20,7 +27,7 @@ def stoppable(context):
         _here.context = before
 
 
-def check():
+def check() -> None:
     """Raises Cancelled if the work in this thread is to end."""
     context = getattr(_here, "context", None)
     if context is not None:

@@ -4,13 +4,18 @@ The parameters' robust least squares are in C++ (src/removal, calibration.h); he
 which parameters are free, and the result becomes a job's law and a report.
 """
 
+from __future__ import annotations
+from collections.abc import Iterator, Sequence
+
 import json
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ..base.files import cannot_be_written, write_whole
+from ..base.kinds import Array, Facts, Floats, Json
 from ..engine import InputError, core
 from . import contacts, report as calibration_report
 from .cautions import (
@@ -40,7 +45,12 @@ STRONG = math.log(150.0)
 WEAR = (("wear_exponent",), ("ln_wear_scale",), ("ln_wear_scale", "wear_rest"))
 
 
-def fit(data, wheel_diameter_mm=None, wear_unit_J=1.0, machine=None):
+def fit(
+    data: Path | str | Table | dict[str, Any],
+    wheel_diameter_mm: float | None = None,
+    wear_unit_J: float = 1.0,
+    machine: Json | None = None,
+) -> dict[str, Any]:
     """Calibrates the law. ``data``: path of a CSV, Table, or dict of columns; ``wear_unit_J``: the
     work of one unit of a wear number; ``machine``: a job's validated belt_machine, whose wheel the
     grinds were done on where the table does not say it. Returns dict(law: a job's 'law', report: see
@@ -51,10 +61,18 @@ def fit(data, wheel_diameter_mm=None, wear_unit_J=1.0, machine=None):
     model, found, free, warnings = _fitted(data, wheel_diameter_mm, contact)
     warnings += cautions(model, found, wear_unit_J)
     law = law_of(model, found, free, wear_unit_J, contact)
-    return {"law": law, "report": calibration_report.report(model, found, free, warnings)}
+    return {
+        "law": law,
+        "report": calibration_report.report(model, found, free, warnings),
+    }
 
 
-def fit_law(data, wheel_diameter_mm=None, wear_unit_J=1.0, machine=None):
+def fit_law(
+    data: Path | str | Table | dict[str, Any],
+    wheel_diameter_mm: float | None = None,
+    wear_unit_J: float = 1.0,
+    machine: Json | None = None,
+) -> dict[str, Any]:
     """The law of ``fit`` without its report, which takes longer."""
     _check_unit(wear_unit_J)
     contact = None if machine is None else contacts.of_machine(machine)
@@ -62,7 +80,7 @@ def fit_law(data, wheel_diameter_mm=None, wear_unit_J=1.0, machine=None):
     return law_of(model, found, free, wear_unit_J, contact)
 
 
-def _check_unit(wear_unit_J):
+def _check_unit(wear_unit_J: float) -> None:
     if not (math.isfinite(wear_unit_J) and wear_unit_J > 0):
         raise InputError(
             "calibration.wear_unit",
@@ -70,7 +88,9 @@ def _check_unit(wear_unit_J):
         )
 
 
-def _fitted(data, wheel_diameter_mm, contact=None):
+def _fitted(
+    data: Table, wheel_diameter_mm: float | None, contact: Json | None = None
+) -> tuple[Model, dict[str, Any], list[str], Facts]:
     """(model, fit, free parameters, warnings)."""
     table = data
     if isinstance(data, dict):
@@ -107,13 +127,14 @@ def _fitted(data, wheel_diameter_mm, contact=None):
     if not found["converged"]:
         warnings.append(
             core.Fact(
-                "calibration.not_at_rest", "the fit has not come to rest: the figures are rough"
+                "calibration.not_at_rest",
+                "the fit has not come to rest: the figures are rough",
             )
         )
     return model, found, free, warnings
 
 
-def _varied(table, warnings):
+def _varied(table: Table, warnings: Facts) -> list[str]:
     """Parameters whose inputs the data vary."""
     names = []
     if max(spread_of(table.force), spread_of(table.force / table.area)) > LEAST_SPREAD:
@@ -142,7 +163,7 @@ def _varied(table, warnings):
     return names
 
 
-def _area_apart(table):
+def _area_apart(table: Table) -> bool:
     """Whether areas were varied apart from forces; solved contacts say all of theirs by the pressure."""
     known = np.isfinite(table.area)
     if np.isfinite(table.relative).any() or spread_of(table.area) <= 2 * LEAST_SPREAD:
@@ -151,14 +172,14 @@ def _area_apart(table):
     return np.ptp(force) == 0 or abs(np.corrcoef(force, area)[0, 1]) < MOST_CORRELATION
 
 
-def _worn(table):
+def _worn(table: Table) -> bool:
     """Whether the belts were worn differently."""
     return bool(
         table.wear_kind and np.ptp(table.wear) > LEAST_SPREAD * max(table.wear.max(), 1e-300)
     )
 
 
-def _with_wear(model, free):
+def _with_wear(model: Model, free: list[str]) -> list[str]:
     """The parameters with those of the wear: a power's, which the belt's last grinds bend least, unless
     the data speak very strongly for another form."""
     forms = [[*free, *wear] for wear in WEAR]
@@ -170,7 +191,7 @@ def _with_wear(model, free):
     return forms[best if found[best] > found[0] + STRONG else 0]
 
 
-def _between(model, found, free):
+def _between(model: Model, found: Json, free: Sequence[str]) -> Floats:
     """Covariance by which ln K and the exponents differ among the forms of the wear, each as likely as the
     data make it (Hoeting, Madigan, Raftery and Volinsky, Statistical Science 14, 1999); (k, k) of all
     parameters."""
@@ -195,7 +216,7 @@ def _between(model, found, free):
     return between
 
 
-def _determined(model, free, warnings):
+def _determined(model: Model, free: list[str], warnings: Facts) -> tuple[list[str], dict[str, Any]]:
     """Fixes what the data leave undetermined. Returns (free, fit)."""
     free = list(free)
     while True:
@@ -208,7 +229,7 @@ def _determined(model, free, warnings):
             free.remove("wear_rest")
 
 
-def _undetermined(model, found, free, warnings):
+def _undetermined(model: Model, found: Json, free: Sequence[str], warnings: Facts) -> str | None:
     """The name of a free parameter to fix, having warned; or None."""
     at = [INDEX[name] for name in free]
     information = found["information"][np.ix_(at, at)]
@@ -244,7 +265,9 @@ def _undetermined(model, found, free, warnings):
             reason = core.Fact("calibration.at_bound", "is at its bound")
             if not at_bound:
                 reason = core.Fact(
-                    "calibration.uncertain", "is uncertain by {by:.1f}", by=1.96 * errors[j]
+                    "calibration.uncertain",
+                    "is uncertain by {by:.1f}",
+                    by=1.96 * errors[j],
                 )
             warnings.append(
                 core.Fact(
@@ -261,13 +284,13 @@ def _undetermined(model, found, free, warnings):
     return None
 
 
-def _two(free, sizes):
+def _two(free: Sequence[str], sizes: Array) -> tuple[str, ...]:
     """The two parameters, other than ln K if possible, that a direction joins most."""
     order = [k for k in np.argsort(-sizes) if k != 0] + [0]
     return tuple(free[k] for k in sorted(order[:2]))
 
 
-def _inseparable(one, two, warnings):
+def _inseparable(one: str, two: str, warnings: Facts) -> str:
     fixed = two if two != "ln_coefficient" else one
     warnings.append(
         core.Fact(
@@ -283,13 +306,15 @@ def _inseparable(one, two, warnings):
     return fixed
 
 
-def _candidates(free):
+def _candidates(free: Sequence[str]) -> Iterator[str]:
     """Further parameters that the data could tell."""
     if "pressure_exponent" in free:
         yield from ("ln_saturation", "pressure_threshold")
 
 
-def _extended(model, free, found):
+def _extended(
+    model: Model, free: list[str], found: dict[str, Any]
+) -> tuple[list[str], dict[str, Any]]:
     """Adds a parameter while the data speak for it very strongly, and it differs from its default."""
     untried = list(_candidates(free))
     evidence = model.evidence(found, free)
@@ -313,7 +338,7 @@ def _extended(model, free, found):
     return free, found
 
 
-def _beginning(model, found, name):
+def _beginning(model: Model, found: Json, name: str) -> Array:
     """Parameters to start from when ``name`` becomes free as well."""
     start = np.array(found["parameters"])
     low, high = model.bounds[name]
@@ -322,15 +347,18 @@ def _beginning(model, found, name):
     return start
 
 
-def write(data, path):
+def write(data: Json, path: Path | str) -> None:
     """Writes a law, or a report, as JSON. Raises InputError."""
     try:
-        write_whole(Path(path), (json.dumps(_plain(data), indent=2) + "\n").encode())
+        write_whole(
+            Path(path),
+            (json.dumps(_plain(data), indent=2, allow_nan=False) + "\n").encode(),
+        )
     except OSError as error:
         raise cannot_be_written(path, error) from None
 
 
-def _plain(value):
+def _plain(value: Any) -> Any:
     """A copy that is JSON: what is not known (nan) becomes null."""
     if isinstance(value, dict):
         return {key: _plain(item) for key, item in value.items()}

@@ -1,13 +1,22 @@
 """What the reader of a calibration has to know: what moves together, what the data leave open, what is assumed."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..base.kinds import Facts, Floats, Json
 from ..engine import core
 from . import contacts
 from .law import worn
 from .model import DEFAULTS, INDEX, PRIORS, correlations
+
+if TYPE_CHECKING:
+    from .model import Model
+    from .table import Table
 
 # What each parameter is the effect of, for messages.
 EFFECT = {  # of the parameters: code and English form
@@ -34,12 +43,12 @@ LEAST_ERRORS = 1.64  # standard errors by which a parameter must differ from its
 LEAST_PERCENT = 1.0  # that a simulation removes more or less than the grinds did, to be told
 
 
-def effect_of(name):
+def effect_of(name: str) -> core.Fact:
     """The fact that names what a parameter is the effect of."""
     return core.Fact(*EFFECT[name])
 
 
-def together(one, other, correlation):
+def together(one: str, other: str, correlation: float) -> core.Fact:
     """The warning that the inputs of two parameters move together."""
     return core.Fact(
         "calibration.together",
@@ -51,13 +60,13 @@ def together(one, other, correlation):
     )
 
 
-def spread_of(values):
+def spread_of(values: Floats) -> float:
     """Standard deviation of ln of the finite ones of ``values`` (n,)."""
     values = values[np.isfinite(values)]
     return float(np.std(np.log(values))) if len(values) > 1 else 0.0
 
 
-def is_told(found, name):
+def is_told(found: Json, name: str) -> bool:
     """Whether a parameter differs from its default by more than the least number of errors."""
     k = INDEX[name]
     default = DEFAULTS[name]
@@ -67,7 +76,7 @@ def is_told(found, name):
     return away > LEAST_ERRORS * math.sqrt(found["covariance"][k, k])
 
 
-def name_inputs(table, warnings):
+def name_inputs(table: Table, warnings: Facts) -> None:
     """Warns of inputs that move together in the data."""
     moving = table.feed > 0
     inputs = {
@@ -98,7 +107,7 @@ def name_inputs(table, warnings):
                 warnings.append(together(one, two, correlation))
 
 
-def name_unsure(model, found, free, warnings):
+def name_unsure(model: Model, found: Json, free: Sequence[str], warnings: Facts) -> None:
     """Warns of parameters of which the data say less than what was known before."""
     errors = np.sqrt(np.diag(model.posterior(found, free)))
     for name, error in zip(free, errors):
@@ -119,7 +128,7 @@ def name_unsure(model, found, free, warnings):
         )
 
 
-def name_pairs(found, free, warnings):
+def name_pairs(found: Json, free: Sequence[str], warnings: Facts) -> None:
     """Warns of parameters that the data hardly separate."""
     correlation = correlations(found, free)
     for j in range(1, len(free)):
@@ -137,7 +146,7 @@ def name_pairs(found, free, warnings):
                 )
 
 
-def cautions(model, found, wear_unit):
+def cautions(model: Model, found: Json, wear_unit: float) -> Facts:
     """What the reader of the result has to know."""
     table, notes = model.table, list(model.table.notes)
     known = np.isfinite(table.relative).all(axis=1)

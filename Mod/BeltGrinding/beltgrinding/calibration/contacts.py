@@ -4,10 +4,15 @@ A law with an exponent removes by the mean of p^alpha over the contact, which is
 pressure's; what is fitted to F/A removes too much where the pressure is uneven.
 """
 
+from __future__ import annotations
+
 import math
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
+from ..base.kinds import Floats, Json
 from ..contact import single_contact
 from ..engine import InputError, core
 from ..job import machine as machines
@@ -24,7 +29,7 @@ WHEEL = {  # columns of a table that make a wheel, and the keys of a contact's
 ASSUMED = "wheel_rim"  # elasticity, unless a machine says another
 
 
-def of_machine(machine):
+def of_machine(machine: Json) -> dict[str, Any]:
     """What a job's validated belt_machine says of the contact of its grinds: keys of a contact's file.
     Raises InputError where it has no pressure."""
     if not machines.wheel_presses(machine):
@@ -62,7 +67,9 @@ def of_machine(machine):
     }
 
 
-def of_table(columns, contact, notes):
+def of_table(
+    columns: Mapping[str, Floats], contact: Json | None, notes: list[Any]
+) -> tuple[Floats, Floats]:
     """(areas (n,) mm2, relative pressures (n, SHARES)), nan where the contact is not known: of the
     columns by name, each (n,), what they leave open taken from ``contact`` (``of_machine``, or None).
     Notes what was solved, and with what."""
@@ -110,7 +117,7 @@ def of_table(columns, contact, notes):
     return area, relative
 
 
-def _solve(force, part, contact):
+def _solve(force: Any, part: Any, contact: Json) -> tuple[float, Floats]:
     """(area mm2, relative pressures (SHARES,)) of a wheel on a cylinder across its travel (nan: a plane)."""
     workpiece = {"shape": "plane"} if math.isnan(part) else {"shape": "cylinder", "radius_mm": part}
     contact = {"model": ASSUMED, **contact, "workpiece": workpiece, "force_N": force}
@@ -128,7 +135,7 @@ def _solve(force, part, contact):
     return float(area[-1]), np.diff(at) * SHARES / force[-1]
 
 
-def _pressed(result):
+def _pressed(result: Json) -> tuple[Floats, Floats]:
     """(pressures MPa, their areas mm2) of a contact where the rubber has moved to, beside the wheel as well."""
     width = result["x"][1] - result["x"][0]
     pressure = np.concatenate([result["displaced_pressure"].ravel(), result["beside"].ravel()])
@@ -142,7 +149,7 @@ def _pressed(result):
     return pressure[pressed], areas[pressed]
 
 
-def too_much(exponent):
+def too_much(exponent: float) -> float:
     """By what factor a law fitted to F/A removes too much under a wheel, about: <p^alpha> / <p>^alpha
     of the pressure of a long Hertzian contact, a semi-ellipse (Johnson, Contact Mechanics, eq. 4.45).
     """

@@ -1,5 +1,7 @@
 """A table of made-up grinds: what a table for a calibration looks like, and one to try it with."""
 
+from __future__ import annotations
+
 import numpy as np
 
 GRINDS = 32
@@ -7,7 +9,7 @@ COEFFICIENT, SCATTER = 2.0e-5, 0.06  # mm2/N of a linear law; of its removals
 HEADER = "force_N,belt_speed_m_s,time_s,area_mm2,work_J,removed_volume_mm3"
 
 
-def table():
+def table() -> str:
     """The text of a CSV file: grinds by V = K V_b F t with some scatter, each input over a range."""
     chance = np.random.default_rng(7)
     force, speed = chance.uniform(8.0, 60.0, GRINDS), chance.uniform(10.0, 30.0, GRINDS)

@@ -5,10 +5,16 @@ removal law's calibration (C++, src/removal), without anything known before: an 
 vary is none, and the model holds for that one value only.
 """
 
+from __future__ import annotations
+
 import math
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from ..base.kinds import Context, Facts, Floats, Json
 from ..engine import InputError, core
 from .cautions import LEAST_SPREAD, MOST_CORRELATION, effect_of, spread_of, together
 from .finish_table import FinishTable, from_columns, read
@@ -43,7 +49,12 @@ LEAST_TOLD = 0.05
 OUTLIER = 3.5  # scatters
 
 
-def fit_finish(data, remaining_cut=None, source="", context=None):
+def fit_finish(
+    data: Path | str | FinishTable | dict[str, Any],
+    remaining_cut: Callable[[float, float], float] | None = None,
+    source: str = "",
+    context: Context = None,
+) -> dict[str, Any]:
     """Calibrates the finish. ``data``: path of a CSV, FinishTable, or dict of columns; ``remaining_cut``: as of
     ``finish_table.from_columns``. Returns dict(model: of a job's ``finish``, report: measurements, parameters (name,
     value, low, high (95 %), free), rest_per_pass (value, low, high) or None, scatter, left_out and plain (median, p90 of
@@ -136,7 +147,7 @@ def fit_finish(data, remaining_cut=None, source="", context=None):
     return {"model": model, "report": report}
 
 
-def predict(model, table):
+def predict(model: Json, table: FinishTable) -> Floats:
     """(n,) Ra, um, that a job's finish model tells for the rows of a FinishTable; NaN outside of its ranges."""
     ratio = {
         "grit_exponent": table.grit / model["reference_grit"],
@@ -157,16 +168,16 @@ def predict(model, table):
     return told
 
 
-def widened(span):
+def widened(span: Sequence[float]) -> tuple[float, float]:
     """A range of what was measured, by what counts as the same."""
     return span[0] * (1.0 - LEAST_SPREAD), span[1] * (1.0 + LEAST_SPREAD)
 
 
-def _at(free):
+def _at(free: Sequence[str]) -> list[int]:
     return [INDEX[name] for name in free]
 
 
-def _varied(table, warnings):
+def _varied(table: FinishTable, warnings: Facts) -> list[str]:
     """Parameters whose inputs the measurements vary."""
     names = []
     for _, name, column in EFFECTS:
@@ -184,7 +195,7 @@ def _varied(table, warnings):
     return names
 
 
-def _name_pairs(table, free, warnings):
+def _name_pairs(table: FinishTable, free: Sequence[str], warnings: Facts) -> None:
     """Warns of inputs that move together."""
     inputs = [(name, np.log(getattr(table, column))) for _, name, column in EFFECTS if name in free]
     for j, (two, b) in enumerate(inputs):
@@ -194,7 +205,7 @@ def _name_pairs(table, free, warnings):
                 warnings.append(together(one, two, correlation))
 
 
-def _references(table):
+def _references(table: FinishTable) -> dict[str, float]:
     """Geometric means, to three digits."""
     middle = lambda values: float(f"{math.exp(float(np.log(values).mean())):.3g}")
     return {
@@ -205,7 +216,7 @@ def _references(table):
     }
 
 
-def _steady(table, rest):
+def _steady(table: FinishTable, rest: float | None) -> Floats:
     """(n,) um: what each measurement tells of the roughness that many passes leave."""
     if rest is None:
         return table.measured
@@ -215,7 +226,7 @@ def _steady(table, rest):
     return np.maximum(told, LEAST_TOLD * table.measured)
 
 
-def _arguments(table, measured):
+def _arguments(table: FinishTable, measured: Floats) -> dict[str, Any]:
     """As core.log_grinds takes them: a depth over an area of 1 in a time of 1."""
     one = np.ones(len(measured))
     return {
@@ -232,7 +243,9 @@ def _arguments(table, measured):
     }
 
 
-def _fit(table, free, references, rest, start=None):
+def _fit(
+    table: FinishTable, free: Sequence[str], references: Json, rest: float | None, start: Any = None
+) -> dict[str, Any]:
     arguments = _arguments(table, _steady(table, rest))
     if start is None:
         start = np.array([DEFAULTS[name] for name in NAMES])
@@ -249,7 +262,7 @@ def _fit(table, free, references, rest, start=None):
     return core.calibrate(arguments, references, start, lower, upper, chosen, nothing, unsure)
 
 
-def _say(table, parameters, references, rest):
+def _say(table: FinishTable, parameters: Any, references: Json, rest: float | None) -> Floats:
     """(n,) ln of the Ra that is told for each row, after its passes."""
     said, _ = core.log_grinds(parameters, _arguments(table, table.measured), references)
     if rest is None:
@@ -259,14 +272,16 @@ def _say(table, parameters, references, rest):
     return np.log((1.0 - left) * np.exp(said) + left * np.where(known, table.initial, 0.0))
 
 
-def _rest(table, free, references):
+def _rest(
+    table: FinishTable, free: Sequence[str], references: Json
+) -> tuple[float, float] | tuple[None, None]:
     """(share that a pass leaves, its standard error), by the least sum of |ln| errors; (None, None) where the
     measurements do not tell."""
     known = np.isfinite(table.passes) & np.isfinite(table.initial)
     if known.sum() < LEAST_REST_ROWS or len(np.unique(table.passes[known])) < 2:
         return None, None
 
-    def loss(rest):
+    def loss(rest: float) -> float:
         own = _fit(table, free, references, rest)["parameters"]
         return float(np.abs(np.log(table.measured) - _say(table, own, references, rest)).sum())
 
@@ -292,7 +307,7 @@ def _rest(table, free, references):
     return rest, found["scatter"] / max(float(np.linalg.norm(apart)), 1e-12)
 
 
-def _check(table, found, free):
+def _check(table: FinishTable, found: Json, free: Sequence[str]) -> None:
     """Raises InputError for an effect that the measurements leave open."""
     errors = np.sqrt(np.diag(found["covariance"]))
     information = found["information"][np.ix_(*2 * [_at(free)])]
@@ -313,7 +328,7 @@ def _check(table, found, free):
             )
 
 
-def _deviation(table, found, free, references):
+def _deviation(table: FinishTable, found: Json, free: Sequence[str], references: Json) -> Floats:
     """(n,) standard deviation of ln Ra of a new measurement at each row."""
     _, gradient = core.log_grinds(
         found["parameters"], _arguments(table, table.measured), references
@@ -323,13 +338,18 @@ def _deviation(table, found, free, references):
     return np.sqrt(np.einsum("ni,ij,nj->n", slopes, covariance, slopes) + found["scatter"] ** 2)
 
 
-def _reference_roughness(parameters, references):
+def _reference_roughness(parameters: Any, references: Json) -> float:
     return math.exp(parameters[0]) * references["speed"] * references["pressure"]
 
 
-def _parameters(model, found, free, quantile):
+def _parameters(
+    model: Json, found: Json, free: Sequence[str], quantile: float
+) -> list[dict[str, Any]]:
     rows = []
-    for key, name in [("coefficient_um", "ln_coefficient"), *[effect[:2] for effect in EFFECTS]]:
+    for key, name in [
+        ("coefficient_um", "ln_coefficient"),
+        *[effect[:2] for effect in EFFECTS],
+    ]:
         k = INDEX[name]
         half = quantile * math.sqrt(found["covariance"][k, k])
         row = {"name": key, "value": model[key], "free": name in free}
@@ -341,7 +361,13 @@ def _parameters(model, found, free, quantile):
     return rows
 
 
-def _left_out(table, free, references, rest, context):
+def _left_out(
+    table: FinishTable,
+    free: Sequence[str],
+    references: Json,
+    rest: float | None,
+    context: core.RunContext,
+) -> Floats:
     """(n,) um: what is told of each measurement by the others."""
     count = len(table.measured)
     told = np.empty(count)
@@ -354,12 +380,15 @@ def _left_out(table, free, references, rest, context):
     return told
 
 
-def _errors(table, told):
+def _errors(table: FinishTable, told: Floats) -> dict[str, float]:
     relative = np.abs(told / table.measured - 1.0)
-    return {"median": float(np.median(relative)), "p90": float(np.quantile(relative, 0.9))}
+    return {
+        "median": float(np.median(relative)),
+        "p90": float(np.quantile(relative, 0.9)),
+    }
 
 
-def _plain(table, references, context):
+def _plain(table: FinishTable, references: Json, context: core.RunContext) -> dict[str, Any]:
     """Errors of left-out measurements by plainer ways: one Ra for all; one by the grit alone."""
     one = _left_out(table, ["ln_coefficient"], references, None, context.part(0.0, 0.5))
     plain = {"constant": _errors(table, one)}
@@ -370,7 +399,7 @@ def _plain(table, references, context):
     return plain
 
 
-def text(report):
+def text(report: Json) -> str:
     """The report as lines for people."""
     lines = [
         f"{report['measurements']} measurements",

@@ -1,11 +1,15 @@
 """The table of measured roughnesses that a calibration of the finish reads."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..base.kinds import Array, Floats, Json
 from ..engine import InputError, core
 from ..job import law as laws
 from .table import number, small_name, split
@@ -38,18 +42,18 @@ class FinishTable(NamedTuple):
     """Measured roughnesses, (n,) float unless said; nan: not known."""
 
     path: str
-    lines: np.ndarray  # of the file, from 1
-    grit: np.ndarray  # in one unit
-    pressure: np.ndarray  # MPa, mean over the contact
-    speed: np.ndarray  # m/s, of the belt
-    feed: np.ndarray  # mm/s
-    cut: np.ndarray  # share of a fresh belt's cut that remains
-    passes: np.ndarray  # over the place; nan: so many that more change nothing
-    initial: np.ndarray  # um, Ra before them
-    measured: np.ndarray  # um, Ra
-    notes: list  # facts for the user
+    lines: Array  # of the file, from 1
+    grit: Floats  # in one unit
+    pressure: Floats  # MPa, mean over the contact
+    speed: Floats  # m/s, of the belt
+    feed: Floats  # mm/s
+    cut: Floats  # share of a fresh belt's cut that remains
+    passes: Floats  # over the place; nan: so many that more change nothing
+    initial: Floats  # um, Ra before them
+    measured: Floats  # um, Ra
+    notes: list[Any]  # facts for the user
 
-    def take(self, index):
+    def take(self, index: Array) -> FinishTable:
         """The rows of ``index``, a mask or an array of places."""
         arrays = {
             key: value[index] for key, value in self._asdict().items() if hasattr(value, "dtype")
@@ -57,21 +61,23 @@ class FinishTable(NamedTuple):
         return self._replace(**arrays)
 
 
-def read(path, remaining_cut=None):
+def read(
+    path: Path | str, remaining_cut: Callable[[float, float], float] | None = None
+) -> FinishTable:
     """FinishTable of a CSV file; ``remaining_cut``: as of ``from_columns``. Raises InputError."""
     header, rows, lines = split(Path(path), _canonical)
     columns = {name: [row[i] for row in rows] for i, name in enumerate(header)}
     return from_columns(columns, str(path), lines, remaining_cut)
 
 
-def wear_by(job):
+def wear_by(job: Json) -> Callable[[float, float], float]:
     """``remaining_cut`` of ``from_columns`` by a job's ``law`` and ``belt_machine``, validated."""
     return lambda work, removed: laws.remaining_cut(
         job, {"work": float(work), "volume": float(removed), "time": 0.0}
     )
 
 
-def _canonical(name):
+def _canonical(name: str) -> str | None:
     small = small_name(name)
     for canonical, aliases in COLUMNS.items():
         if small == canonical.lower() or small in aliases:
@@ -79,7 +85,12 @@ def _canonical(name):
     return None
 
 
-def from_columns(columns, path="measurements", lines=None, remaining_cut=None):
+def from_columns(
+    columns: Mapping[str, Sequence[Any]],
+    path: str = "measurements",
+    lines: Sequence[int] | None = None,
+    remaining_cut: Callable[[float, float], float] | None = None,
+) -> FinishTable:
     """FinishTable of columns by name (lists of numbers or texts). ``remaining_cut(work J, removed mm3)``: share of a
     fresh belt's cut, for tables that tell what the belt has done in its place. Raises InputError.
     """
@@ -126,7 +137,12 @@ def from_columns(columns, path="measurements", lines=None, remaining_cut=None):
         _require(name in c, path, core.Fact(*what), name)
     loaded = "force_N" in c and "area_mm2" in c
     pressure = core.Fact("calibration.the_pressure", "the mean pressure")
-    _require("pressure_MPa" in c or loaded, path, pressure, "pressure_MPa or force_N, area_mm2")
+    _require(
+        "pressure_MPa" in c or loaded,
+        path,
+        pressure,
+        "pressure_MPa or force_N, area_mm2",
+    )
     unknown = np.full(count, math.nan)
     return FinishTable(
         path=path,
@@ -143,7 +159,7 @@ def from_columns(columns, path="measurements", lines=None, remaining_cut=None):
     )
 
 
-def _require(there, path, what, columns):
+def _require(there: Any, path: Any, what: str, columns: Any) -> None:
     if not there:
         raise InputError(
             "calibration.no_column",
@@ -154,7 +170,7 @@ def _require(there, path, what, columns):
         )
 
 
-def _moving(feed, path, lines):
+def _moving(feed: Floats, path: Any, lines: Any) -> Floats:
     still = np.flatnonzero(~(feed > 0.0))
     if len(still):
         raise InputError(
@@ -167,7 +183,14 @@ def _moving(feed, path, lines):
     return feed
 
 
-def _cut(c, path, lines, count, remaining_cut, notes):
+def _cut(
+    c: Mapping[str, Any],
+    path: Any,
+    lines: Any,
+    count: int,
+    remaining_cut: Callable[[float, float], float] | None,
+    notes: list[Any],
+) -> Floats:
     """Share of a fresh belt's cut."""
     if "remaining_cut" in c:
         above = np.flatnonzero(c["remaining_cut"] > 1.0)
@@ -197,7 +220,7 @@ def _cut(c, path, lines, count, remaining_cut, notes):
     return np.ones(count)
 
 
-def _of_job(columns, worn):
+def _of_job(columns: Any, worn: bool) -> core.Fact:
     """The note that a job has told how far belts were worn; ``worn``: whether it makes a difference."""
     if not worn:
         return core.Fact(

@@ -1,12 +1,17 @@
 """A calibrated law: a job's 'law' from a fit, and what it predicts of further grinds."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from statistics import NormalDist
+from typing import Any
 
 import numpy as np
 
 from ..base.files import cannot_be_written, write_whole
+from ..base.kinds import Floats, Json
 from ..engine import InputError
 from .model import DEFAULTS, INDEX, NAMES, Model
 from .table import Table, from_columns, read, with_areas
@@ -24,11 +29,11 @@ NORMAL = NormalDist()
 LEAST_LEFT = 0.05  # of a grind's variance, once it has pulled the fit to itself
 
 
-def worn(found):
+def worn(found: Json) -> bool:
     return math.isfinite(found["parameters"][INDEX["ln_wear_scale"]])
 
 
-def student(freedom, share=0.95):
+def student(freedom: float, share: float = 0.95) -> float:
     """Student's t within which ``share`` lies (Abramowitz and Stegun, 26.7.5: expansion in 1/n)."""
     z, n = NORMAL.inv_cdf(0.5 + 0.5 * share), max(float(freedom), 1.0)
     terms = (
@@ -40,7 +45,7 @@ def student(freedom, share=0.95):
     return z + sum(term / n ** (k + 1) for k, term in enumerate(terms))
 
 
-def widening(model, found, free):
+def widening(model: Model, found: Json, free: Sequence[str]) -> float:
     """Factor on a prediction's deviation after which 1.96 of them hold 95 % of new grinds: Student's
     t, and as much more as the grinds, each predicted without itself, scatter beyond it (the quantile
     of conformal prediction, Barber, Candes, Ramdas and Tibshirani, Annals of Statistics 49, 2021; the
@@ -61,7 +66,13 @@ def widening(model, found, free):
     return max(1.0, float(beyond)) * student(freedom) / student(math.inf)
 
 
-def law_of(model, found, free, wear_unit, contact=None):
+def law_of(
+    model: Model,
+    found: Json,
+    free: Sequence[str],
+    wear_unit: float,
+    contact: Json | None = None,
+) -> dict[str, Any]:
     """The 'law' of a job; ``contact``: of the grinds, as far as the table does not say it."""
     x = {name: float(found["parameters"][k]) for name, k in INDEX.items()}
     wear, kind = {"model": "none"}, model.table.wear_kind
@@ -118,7 +129,11 @@ def law_of(model, found, free, wear_unit, contact=None):
     }
 
 
-def predict(law, rows, wheel_diameter_mm=None):
+def predict(
+    law: Json,
+    rows: Table | Path | str | dict[str, Any] | list[dict[str, Any]],
+    wheel_diameter_mm: float | None = None,
+) -> dict[str, Any]:
     """What a law says of grinds. ``rows``: Table, path, dict of columns or list of dicts, with the
     columns of a calibration (the removal is not needed; without wear, the calibration's mean;
     without areas, those of the calibration). Returns dict(predicted (n,) mm3, or mm
@@ -154,10 +169,14 @@ def predict(law, rows, wheel_diameter_mm=None):
     deviation = np.sqrt(variance + law.get("calibration", {}).get("scatter", 0.0) ** 2)
     deviation = deviation * fitted.get("widening", 1.0)
     value = np.exp(mean)
-    return {"predicted": value, "deviation": value * deviation, "ln_deviation": deviation}
+    return {
+        "predicted": value,
+        "deviation": value * deviation,
+        "ln_deviation": deviation,
+    }
 
 
-def compare(law, path, wheel_diameter_mm=None):
+def compare(law: Json, path: Path | str, wheel_diameter_mm: float | None = None) -> dict[str, Any]:
     """Predicts the grinds of a CSV, and lays them beside the removal where the file has it. Returns
     dict(lines, predicted, deviation, measured: (n,), nan where not known; figures: dict; notes).
     Raises InputError.
@@ -189,7 +208,7 @@ def compare(law, path, wheel_diameter_mm=None):
     }
 
 
-def write_predictions(found, path):
+def write_predictions(found: Json, path: Path | str) -> None:
     """Writes what ``compare`` gave as a CSV. Raises InputError."""
     lines = ["line,predicted,standard_deviation,measured"]
     for row in zip(*(found[key] for key in ("lines", "predicted", "deviation", "measured"))):
@@ -201,7 +220,7 @@ def write_predictions(found, path):
         raise cannot_be_written(path, error) from None
 
 
-def _with_wear(rows, law, fitted, unit):
+def _with_wear(rows: Table, law: Json, fitted: Json, unit: float) -> Table:
     """The rows with the belt's wear as the law counts it; the calibration's mean if not known."""
     if law.get("wear", {}).get("model", "none") == "none":
         return rows
@@ -220,12 +239,16 @@ def _with_wear(rows, law, fitted, unit):
     return rows._replace(wear=rows.wear * unit)
 
 
-def _of_law(law, fitted):
+def _of_law(law: Json, fitted: Json) -> tuple[Floats, dict[str, float], float]:
     """(parameters, references, joules of the wear's unit) of a law."""
     local = law.get("model", "local") == "local"
     curves = [key for key in CURVES if law.get(key)]
     wear = law.get("wear", {})
-    if (local and curves) or wear.get("model", "none") not in ("none", "exponential", "power"):
+    if (local and curves) or wear.get("model", "none") not in (
+        "none",
+        "exponential",
+        "power",
+    ):
         raise InputError(
             "calibration.not_predicted",
             "law: curves and other wear than 'exponential' and 'power' are not predicted here",
@@ -241,7 +264,10 @@ def _of_law(law, fitted):
     if wear.get("model") == "exponential":
         x["ln_wear_scale"], x["wear_rest"] = math.log(wear["scale"]), wear.get("rest", 0.0)
     if wear.get("model") == "power":
-        x["ln_wear_scale"], x["wear_exponent"] = math.log(wear["scale"]), wear["exponent"]
+        x["ln_wear_scale"], x["wear_exponent"] = (
+            math.log(wear["scale"]),
+            wear["exponent"],
+        )
     x["time_exponent"] = fitted.get("time_exponent", 1.0)
     x["area_exponent"] = fitted.get("area_exponent", 0.0)
     references = {
@@ -251,4 +277,8 @@ def _of_law(law, fitted):
         "time": fitted.get("reference_time_s", 1.0),
         "area": fitted.get("reference_area_mm2", 1.0),
     }
-    return np.array([x[name] for name in NAMES]), references, fitted.get("wear_unit_J", 1.0)
+    return (
+        np.array([x[name] for name in NAMES]),
+        references,
+        fitted.get("wear_unit_J", 1.0),
+    )

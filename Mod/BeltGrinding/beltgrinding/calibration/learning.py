@@ -8,19 +8,26 @@ counts more the more the belt has done. What no law predicts, the scatter of a g
 itself, and is not learned. The state drifts a little from part to part, so that learning never ends.
 """
 
+from __future__ import annotations
+from collections.abc import Sequence
+
 import copy
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..base.kinds import Context, Floats, Json
 from ..engine import InputError, core
 from ..job import law as laws
 from ..simulation import run as runs
 
 COEFFICIENT, WEAR = laws.COEFFICIENT, "ln_wear_scale"
 SCALES = ("scale", "first_scale")
-UNKNOWN = {COEFFICIENT: 0.5, WEAR: 0.7}  # standard deviation of what nothing is known of
+UNKNOWN = {
+    COEFFICIENT: 0.5,
+    WEAR: 0.7,
+}  # standard deviation of what nothing is known of
 SCATTER = 0.05  # of a grind, where none was measured
 DRIFT = 0.03  # of the logarithms, from part to part
 STEP = 1e-2  # of a parameter, for its derivative
@@ -36,14 +43,22 @@ QUANTILE = 1.96
 class Learned(NamedTuple):
     """What was learned."""
 
-    law: dict  # the job's, corrected, with its new covariance
-    report: list  # dicts: parameter, before, after, interval (2,) of 95 %, interval_before (2,)
+    law: dict[str, Any]  # the job's, corrected, with its new covariance
+    report: list[
+        dict[str, Any]
+    ]  # dicts: parameter, before, after, interval (2,) of 95 %, interval_before (2,)
     factor: float  # measured removal over predicted, of this part
-    rms_mm: tuple  # of what was measured less what is predicted: before, after
+    rms_mm: tuple[float, float]  # of what was measured less what is predicted: before, after
     samples: int
 
 
-def learn(job, measured, scatter=None, drift=DRIFT, context=None):
+def learn(
+    job: Json,
+    measured: Floats,
+    scatter: float | None = None,
+    drift: float = DRIFT,
+    context: Context = None,
+) -> Learned:
     """``Learned`` from a validated job as one part was ground (its programs, its law as it was believed, its belt's use
     before the part) and the scan's heights ``measured`` (samples,), mm above the design at the samples of the job; NaN
     where there are none. ``scatter``: standard deviation of ln(measured / predicted) of a grind; None: the
@@ -60,7 +75,12 @@ def learn(job, measured, scatter=None, drift=DRIFT, context=None):
     if scatter is None:
         scatter = calibration.get("scatter") or SCATTER
     names, prior = _prior(law, drift)
-    inverse, found, before, part = np.linalg.inv(prior), np.zeros(len(names)), None, None
+    inverse, found, before, part = (
+        np.linalg.inv(prior),
+        np.zeros(len(names)),
+        None,
+        None,
+    )
     for k in range(ROUNDS):
         share = context.part(k / ROUNDS, (k + 1) / ROUNDS)
         part = _Part(job, law, names, found, measured, share)
@@ -98,7 +118,15 @@ def learn(job, measured, scatter=None, drift=DRIFT, context=None):
 class _Part:
     """One part as a law that is moved by ``found`` (parameters,) would leave it, against the scan."""
 
-    def __init__(self, job, law, names, found, measured, context):
+    def __init__(
+        self,
+        job: Json,
+        law: Json,
+        names: Sequence[str],
+        found: Any,
+        measured: Floats,
+        context: Context,
+    ) -> None:
         law = _applied(law, names, found)
         exponents = [name for name in names if name in laws.EXPONENTS]
         trial_covariance = STEP**2 * np.eye(len(exponents))
@@ -134,7 +162,7 @@ class _Part:
                 least=LEAST_BLOCKS,
             )
 
-        def means(values):
+        def means(values: Floats) -> Floats:
             return np.bincount(block, values[self.used]) / self.count
 
         belt = laws.engine_belt(job["belt_machine"]["belt"])
@@ -148,7 +176,7 @@ class _Part:
         self.slopes = np.column_stack([means(columns[name]) for name in names])
         self.missing = means(height - np.where(self.used, measured, 0.0))
 
-    def corrected(self, found, inverse, scatter):
+    def corrected(self, found: Floats, inverse: Floats, scatter: float) -> tuple[Floats, Floats]:
         """(parameters (n,), covariance (n, n)): what was known before, with the inverse of its covariance, and this
         part. The part's own factor is one more unknown, which is dropped."""
         slopes = np.column_stack([self.slopes, self.removed])
@@ -168,16 +196,16 @@ class _Part:
         covariance = np.linalg.inv(information)
         return (covariance @ slopes.T @ (weight / error**2 * target))[:-1], covariance[:-1, :-1]
 
-    def factor(self):
+    def factor(self) -> float:
         """Measured removal over predicted, over the blocks."""
         removed = self.removed * self.count
         return float(1.0 + (self.missing * self.count).sum() / removed.sum())
 
-    def rms(self):
+    def rms(self) -> float:
         return float(np.sqrt(np.average(self.missing**2, weights=self.count)))
 
 
-def _prior(law, drift):
+def _prior(law: Json, drift: float) -> tuple[list[str], Floats]:
     """(names, covariance) before the part: the calibration's, with the drift of a part."""
     calibration = law["calibration"]
     given = list(calibration.get("parameters", []))
@@ -188,7 +216,11 @@ def _prior(law, drift):
     kept = [k for k, name in enumerate(given) if name in learnt]
     names = [given[k] for k in kept]
     sizes = {}
-    if WEAR not in names and law["wear"]["model"] in ("exponential", "two_stage", "power"):
+    if WEAR not in names and law["wear"]["model"] in (
+        "exponential",
+        "two_stage",
+        "power",
+    ):
         fit = calibration.get("fit", {})
         if WEAR in fit.get("parameters", ()):
             k = fit["parameters"].index(WEAR)
@@ -207,7 +239,7 @@ def _prior(law, drift):
     return names, whole
 
 
-def _applied(law, names, found):
+def _applied(law: Json, names: Sequence[str], found: Floats) -> dict[str, Any]:
     """A copy of a law, its parameters moved."""
     law = copy.deepcopy(law)
     for name, by in zip(names, found):
@@ -221,7 +253,7 @@ def _applied(law, names, found):
     return law
 
 
-def _wear_slope(law, belt):
+def _wear_slope(law: Json, belt: Any) -> float:
     """By how much ln k_t changes with the logarithm of the wear's scale."""
     low, high = (
         core.belt_remaining(laws.engine_wear(_applied(law, [WEAR], [by])), belt)
@@ -230,13 +262,13 @@ def _wear_slope(law, belt):
     return (math.log(max(high, 1e-12)) - math.log(max(low, 1e-12))) / (2.0 * STEP)
 
 
-def _value(law, name):
+def _value(law: Json, name: str) -> float:
     if name == COEFFICIENT:
         return law["coefficient_mm2_per_N"]
     return law["wear"]["scale"] if name == WEAR else law[name]
 
 
-def _interval(law, name, variance):
+def _interval(law: Json, name: str, variance: float) -> list[float]:
     value, half = _value(law, name), QUANTILE * math.sqrt(max(variance, 0.0))
     if name in (COEFFICIENT, WEAR):
         return [value * math.exp(-half), value * math.exp(half)]

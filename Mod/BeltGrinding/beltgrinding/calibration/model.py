@@ -1,10 +1,19 @@
 """The model of a measured grind: its parameters, their bounds, its fit to a table (in C++)."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Sequence
+from typing import Any, TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from ..base.kinds import Array, Floats, Json
 from ..engine import core
+
+if TYPE_CHECKING:
+    from .table import Table
 
 NAMES = list(core.GRIND_PARAMETERS)
 INDEX = {name: k for k, name in enumerate(NAMES)}
@@ -52,7 +61,13 @@ FRESH = 0.1  # of the geometric mean of the wear: from there on the cut falls by
 class Model:
     """A table with its references and the parameters that are free; fits and predicts."""
 
-    def __init__(self, table, references=None, areas=None, profile=None):
+    def __init__(
+        self,
+        table: Table,
+        references: dict[str, float] | None = None,
+        areas: Any = None,
+        profile: Any = None,
+    ) -> None:
         self.table = table
         self.references = references or _references(table)
         known = table.area[~np.isnan(table.area)]
@@ -79,7 +94,12 @@ class Model:
         used = table.wear[table.wear > 0]
         self.fresh = math.log(FRESH * float(np.exp(np.log(used).mean()))) if len(used) else math.inf
 
-    def fit(self, free, start=None, rows=None):
+    def fit(
+        self,
+        free: Sequence[str],
+        start: ArrayLike | None = None,
+        rows: Array | None = None,
+    ) -> dict[str, Any]:
         """What core.calibrate gives. ``free``: names; ``start``: (parameters,); ``rows``: of the
         table, an index."""
         lower, upper = np.zeros(len(NAMES)), np.zeros(len(NAMES))
@@ -112,17 +132,17 @@ class Model:
             deviation,
         )
 
-    def posterior(self, found, free):
+    def posterior(self, found: Json, free: Sequence[str]) -> Floats:
         """Covariance of the free parameters (k, k), if the scatter is normal."""
         at = [INDEX[name] for name in free]
         known = found["information"][np.ix_(at, at)] / found["scatter"] ** 2
         return np.linalg.pinv(known + np.diag(self._knowledge(free)))
 
-    def _knowledge(self, free):
+    def _knowledge(self, free: Sequence[str]) -> Floats:
         """One over the priors' variances, (k,)."""
         return np.array([self.priors.get(name, (0.0, math.inf))[1] ** -2.0 for name in free])
 
-    def evidence(self, found, free):
+    def evidence(self, found: Json, free: Sequence[str]) -> float:
         """ln of the probability of the data after Laplace, parameters integrated over (MacKay, Neural
         Computation 4, 1992); comparable among fits of the same rows."""
         sign, volume = np.linalg.slogdet(self.posterior(found, free))
@@ -136,11 +156,13 @@ class Model:
                 total -= 0.5 * away**2 + math.log(deviation)
         return float(total)
 
-    def _rows(self, rows):
+    def _rows(self, rows: Any) -> dict[str, Any]:
         a = self.arguments
         return {key: a[key] if key == "areas" else a[key][rows] for key in a}
 
-    def predict(self, parameters, shares, rows=None):
+    def predict(
+        self, parameters: Floats, shares: Floats, rows: Array | None = None
+    ) -> tuple[Floats, Floats, Floats]:
         """(ln of the figure (n,), gradient (n, parameters), variance by unknown areas (n,))."""
         arguments = self.arguments if rows is None else self._rows(rows)
         unknown = np.isnan(arguments["area"])
@@ -156,15 +178,15 @@ class Model:
             variance += share * np.square(said - mean)
         return mean, gradient, variance
 
-    def _say(self, parameters, arguments, area):
+    def _say(self, parameters: Any, arguments: Json, area: Floats) -> Any:
         known = np.where(np.isnan(arguments["area"]), area, arguments["area"])
         return core.log_grinds(parameters, {**arguments, "area": known}, self.references)
 
 
-def _references(table):
+def _references(table: Table) -> dict[str, float]:
     """Geometric means of the data, to three digits: there ln K and the exponents are told apart."""
 
-    def middle(values):
+    def middle(values: Floats) -> float:
         values = values[~np.isnan(values)]
         return float(f"{math.exp(float(np.log(values).mean())):.3g}") if len(values) else 1.0
 
@@ -178,7 +200,7 @@ def _references(table):
     }
 
 
-def _levels(known):
+def _levels(known: Floats) -> Floats:
     """What an unknown area can be: the known ones, gathered where they lie close or are many."""
     ordered = np.sort(known)
     groups = np.split(ordered, np.flatnonzero(np.diff(np.log(ordered)) > 0.02) + 1)
@@ -188,17 +210,17 @@ def _levels(known):
     return levels
 
 
-def _filled(area, areas):
+def _filled(area: Floats, areas: Floats) -> Floats:
     return np.where(np.isnan(area), np.exp(np.log(areas).mean()), area)
 
 
-def _profile(relative):
+def _profile(relative: Floats) -> Floats:
     """Relative pressures (m,) of the contacts that are not known: the mean of those that are, else even."""
     known = np.isfinite(relative).all(axis=1)
     return relative[known].mean(axis=0) if known.any() else np.ones(1)
 
 
-def _arguments(table, areas, profile):
+def _arguments(table: Table, areas: Floats, profile: Floats) -> dict[str, Any]:
     relative = np.tile(profile, (len(table.force), 1))
     if len(profile) == table.relative.shape[1]:
         relative = np.where(np.isfinite(table.relative), table.relative, relative)
@@ -216,7 +238,7 @@ def _arguments(table, areas, profile):
     }
 
 
-def correlations(found, free):
+def correlations(found: Json, free: Sequence[str]) -> Floats:
     """Correlation matrix of the free parameters; 0 for those at a bound."""
     at = [INDEX[name] for name in free]
     covariance = found["covariance"][np.ix_(at, at)]

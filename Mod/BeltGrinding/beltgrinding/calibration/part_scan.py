@@ -1,10 +1,18 @@
 """The law's coefficient from a scan of the ground part and a simulation of its job."""
 
+from __future__ import annotations
+
+import contextlib
 import math
+from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from ..base.kinds import Array, Floats
 from ..engine import InputError, core
+from ..job import sizes, workpiece
 from ..simulation.result import Result
 
 CAUCHY = 2.385  # 95 % efficient under normal scatter
@@ -15,14 +23,14 @@ QUANTILE = 1.96
 
 
 def calibrate_from_scan(
-    measured_deviation,
-    simulated_deviation,
-    removed,
-    coefficient,
-    points=None,
-    block_mm=10.0,
-    offset=False,
-):
+    measured_deviation: Floats,
+    simulated_deviation: Floats,
+    removed: Floats,
+    coefficient: float,
+    points: Floats | None = None,
+    block_mm: float = 10.0,
+    offset: bool = False,
+) -> dict[str, Any]:
     """The coefficient with which the simulated job would have given the measured surface.
 
     measured_deviation, simulated_deviation (n,): mm above the design, nan where there is no scan
@@ -47,7 +55,8 @@ def calibrate_from_scan(
         )
     if not (math.isfinite(coefficient) and coefficient > 0):
         raise InputError(
-            "calibration.scan_coefficient", "scan: the simulation's coefficient must be positive"
+            "calibration.scan_coefficient",
+            "scan: the simulation's coefficient must be positive",
         )
     good = np.isfinite(measured) & np.isfinite(simulated) & np.isfinite(removed)
     ground = good & (removed > LEAST_DEPTH * np.max(removed, where=good, initial=0.0))
@@ -94,7 +103,12 @@ def calibrate_from_scan(
     }
 
 
-def measured_heights(result, scan=None, unit_mm=1.0, placement=None):
+def measured_heights(
+    result: Result,
+    scan: Path | str | None = None,
+    unit_mm: float = 1.0,
+    placement: ArrayLike | None = None,
+) -> Floats:
     """(samples,) mm above the design of a ``Result``, as ``from_files`` takes them; NaN where there are none. Raises
     InputError."""
     field = result.field
@@ -110,7 +124,13 @@ def measured_heights(result, scan=None, unit_mm=1.0, placement=None):
     else:
         scanned = field.copy()
         stock = result.job["stock"]
-        mesh = core.read_mesh(str(scan), unit_mm, np.eye(4) if placement is None else placement)
+        report, design = {}, None
+        placement = np.eye(4) if placement is None else placement
+        mesh = core.read_mesh(str(scan), unit_mm, placement, report=report)
+        with contextlib.suppress(InputError):  # a design that is there no more
+            design = workpiece.read_design(result.job["design"])
+        if design is not None:
+            sizes.check_box(mesh.vertices, design, report["unit_mm"], stock["search_above_mm"])
         core.apply_mesh(scanned, mesh, stock["search_above_mm"], stock["search_below_mm"])
         unmeasured |= (np.asarray(scanned.flags) & core.MISSED) != 0
         measured = np.array(scanned.height)
@@ -118,7 +138,13 @@ def measured_heights(result, scan=None, unit_mm=1.0, placement=None):
     return measured
 
 
-def from_files(result, scan=None, unit_mm=1.0, placement=None, offset=False):
+def from_files(
+    result: Path | str,
+    scan: Path | str | None = None,
+    unit_mm: float = 1.0,
+    placement: ArrayLike | None = None,
+    offset: bool = False,
+) -> tuple[dict[str, Any], dict[str, Any]]:
     """``calibrate_from_scan`` for a result's folder (as ``beltgrind run`` writes it) and a scan of the
     ground part, a mesh's file in the job's coordinates; ``unit_mm``: mm of the file's 1; placement:
     where the mesh lies, a 4 x 4 matrix. Without a scan: the one that was aligned and measured for
@@ -149,7 +175,7 @@ def from_files(result, scan=None, unit_mm=1.0, placement=None, offset=False):
     return law, figures
 
 
-def _blocks(points, used, size):
+def _blocks(points: Floats, used: Array, size: float) -> Array:
     """Number of the block of each used sample."""
     count = int(used.sum())
     if points is None:
@@ -164,7 +190,7 @@ def _blocks(points, used, size):
     return np.unique(cells, axis=0, return_inverse=True)[1].ravel()
 
 
-def _robust(design, depth):
+def _robust(design: Floats, depth: Floats) -> tuple[Floats, float, Floats]:
     """(parameters, scatter, weights) by iteratively reweighted least squares, from the median."""
     found = np.zeros(design.shape[1])
     steep = design[:, 0] > LEAST_DEPTH * design[:, 0].max()
@@ -182,7 +208,7 @@ def _robust(design, depth):
     return found, scatter, weights
 
 
-def _curvature(residual, scatter):
+def _curvature(residual: Floats, scatter: float) -> Floats:
     """Of Cauchy's loss; the sum over the samples is positive where the fit is a minimum."""
     square = (residual / (CAUCHY * scatter)) ** 2
     return (1.0 - square) / (1.0 + square) ** 2

@@ -1,12 +1,24 @@
 """The picture of a calibration: measured against predicted, and residuals against each input."""
 
+from __future__ import annotations
+from typing import Any
+from collections.abc import Sequence
+
 import math
 from pathlib import Path
 
 import numpy as np
 
 from ..base.files import cannot_be_written, write_whole
-from ..base.plotting import BLUE, GREY, ORANGE, figure as new_figure, grid as grid_lines, saved
+from ..base.kinds import Array, Json
+from ..base.plotting import (
+    BLUE,
+    GREY,
+    ORANGE,
+    figure as new_figure,
+    grid as grid_lines,
+    saved,
+)
 from ..engine import InputError
 
 FORMATS = (".png", ".svg", ".pdf")
@@ -24,7 +36,7 @@ LABELS = {
 COLUMNS = 4  # of residuals
 
 
-def draw(report, path):
+def draw(report: Json, path: Path | str) -> None:
     """Draws a calibration's report into a PNG, SVG or PDF. Raises InputError."""
     path = Path(path)
     if path.suffix.lower() not in FORMATS:
@@ -41,7 +53,7 @@ def draw(report, path):
         raise cannot_be_written(path, error) from None
 
 
-def render(report, kind="png", dpi=110):
+def render(report: Json, kind: str = "png", dpi: float = 110) -> bytes:
     """The picture as bytes of a file. Raises InputError without matplotlib."""
     rows = report["rows"]
     inputs = [name for name in LABELS if _drawn(rows.get(name))]
@@ -63,7 +75,7 @@ def render(report, kind="png", dpi=110):
     return saved(figure, kind, dpi)
 
 
-def render_small(report):
+def render_small(report: Json) -> bytes:
     """Measured against predicted alone, a small square PNG. Raises InputError."""
     figure = new_figure(2.6, 2.6)
     axes = figure.add_subplot()
@@ -75,31 +87,31 @@ def render_small(report):
     return saved(figure, "png", 160)
 
 
-def _drawn(values):
+def _drawn(values: Array) -> bool:
     """Whether an input has two values to draw."""
     values = np.asarray([] if values is None else values, dtype=float)
     values = values[np.isfinite(values)]
     return len(values) > 1 and np.ptp(values) > 1e-6 * np.abs(values).max()
 
 
-def _number(value, _):
+def _number(value: float, _: object) -> str:
     return f"{value:.4g}"
 
 
-def _plain(axis, LogLocator, NullFormatter, ticks=(1.0, 2.0, 5.0)):
+def _plain(axis: Any, LogLocator: Any, NullFormatter: Any, ticks: Any = (1.0, 2.0, 5.0)) -> None:
     """A logarithmic axis with plain numbers at ``ticks`` of each decade."""
     axis.set_major_locator(LogLocator(subs=ticks))
     axis.set_major_formatter(_number)
     axis.set_minor_formatter(NullFormatter())
 
 
-def _split(rows, *names):
+def _split(rows: Sequence[Json], *names: Sequence[str]) -> tuple[list[Array], list[Array]]:
     outlier = np.asarray(rows["outlier"], dtype=bool)
     columns = [np.asarray(rows[name], dtype=float) for name in names]
     return [c[~outlier] for c in columns], [c[outlier] for c in columns]
 
 
-def _compare(axes, report):
+def _compare(axes: Any, report: Json) -> None:
     from matplotlib.ticker import LogLocator, NullFormatter
 
     rows = report["rows"]
@@ -123,7 +135,7 @@ def _compare(axes, report):
     grid_lines(axes)
 
 
-def _tell(axes, report):
+def _tell(axes: Any, report: Json) -> None:
     """The parameters as text."""
     axes.axis("off")
     rows = []
@@ -136,7 +148,11 @@ def _tell(axes, report):
     at = report["references"]
     rows += [
         ("", "", ""),
-        ("the coefficient holds at", "", ", ".join(f"{at[key]:.3g} {key}" for key in at)),
+        (
+            "the coefficient holds at",
+            "",
+            ", ".join(f"{at[key]:.3g} {key}" for key in at),
+        ),
         ("grinds", str(report["grinds"]), ""),
         ("left-out error, median", f"{100 * left['median']:.1f} %", ""),
         ("left-out error, 90 %", f"{100 * left['p90']:.0f} %", ""),
@@ -151,7 +167,7 @@ def _tell(axes, report):
             axes.text(place, y, text, ha=side, va="top", fontsize=8.5, weight=weight)
 
 
-def _residuals(axes, rows, name):
+def _residuals(axes: Any, rows: Sequence[Json], name: str) -> None:
     from matplotlib.ticker import LogLocator, NullFormatter
 
     inside, outside = _split(rows, name, "measured", "predicted")

@@ -1,17 +1,26 @@
 """The report of a calibration: what is found, how sure it is, how well it predicts."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..base.kinds import Facts, Floats, Json
 from . import model as c
 from .law import LAW_NAMES, student, widening
+
+if TYPE_CHECKING:
+    from .model import Model
+    from .table import Table
 
 OUTLIER = 3.5  # scatters
 MOST_LEFT_OUT = 150  # larger tables leave out several grinds at once
 
 
-def report(model, found, free, warnings):
+def report(model: Model, found: Json, free: Sequence[str], warnings: Facts) -> dict[str, Any]:
     """dict: parameters (list of name, value, low, high (95 %), unit, free), correlation (with
     'names'), condition (of the parameters' scaled information), r2 and rms_log (in-sample),
     scatter, references (where the coefficient holds, by unit), leave_one_out (median, p90: relative
@@ -39,11 +48,17 @@ def report(model, found, free, warnings):
     outliers = np.abs(residual) > OUTLIER * found["scatter"]
     if outliers.any():
         lines = ", ".join(str(line) for line in table.lines[outliers])
-        warnings = [*warnings, f"outliers, which hardly count: line {lines}; look at them"]
+        warnings = [
+            *warnings,
+            f"outliers, which hardly count: line {lines}; look at them",
+        ]
     return {
         "grinds": len(truth),
         "parameters": _parameters(model, found, free),
-        "correlation": {"names": list(free), "matrix": c.correlations(found, free).tolist()},
+        "correlation": {
+            "names": list(free),
+            "matrix": c.correlations(found, free).tolist(),
+        },
         "condition": float(math.sqrt(singular[0] / max(singular[-1], 1e-300))),
         "r2": 1.0 - float(np.square(residual).sum()) / total if total > 0 else 0.0,
         "rms_log": float(np.sqrt(np.square(residual).mean())),
@@ -69,7 +84,7 @@ def report(model, found, free, warnings):
     }
 
 
-def _references(model):
+def _references(model: Model) -> dict[str, float]:
     """Where the coefficient holds: {unit: value}."""
     at = model.references
     result = {"MPa": at["pressure"], "m/s": at["speed"] / 1000.0}
@@ -78,7 +93,7 @@ def _references(model):
     return result
 
 
-def _inputs(table):
+def _inputs(table: Table) -> dict[str, Floats]:
     columns = {"force_N": table.force, "belt_speed_m_s": table.speed}
     if (table.feed <= 0).any():
         columns["time_s"] = np.where(table.feed > 0, np.nan, table.time)
@@ -92,7 +107,7 @@ def _inputs(table):
     return columns
 
 
-def ranges(table):
+def ranges(table: Table) -> dict[str, list[float]]:
     """{column: [least, greatest]} of the data, where the law is more than a guess."""
     return {
         name: [float(np.nanmin(values)), float(np.nanmax(values))]
@@ -100,7 +115,7 @@ def ranges(table):
     }
 
 
-def left_out(model, free, found):
+def left_out(model: Model, free: Sequence[str], found: Json) -> Floats:
     """ln of what each grind is predicted without it, (n,)."""
     count = len(model.table.measured)
     order = np.random.default_rng(2).permutation(count)
@@ -129,7 +144,7 @@ SHOWN = {  # name in the report, unit
 }
 
 
-def _parameters(model, found, free):
+def _parameters(model: Model, found: Json, free: Sequence[str]) -> list[dict[str, Any]]:
     quantile = student(len(model.table.measured) - len(free))
     rows = []
     for name, k in c.INDEX.items():
@@ -150,13 +165,16 @@ def _parameters(model, found, free):
     return rows
 
 
-def _exp(value):
+def _exp(value: float) -> float:
     return math.exp(min(value, 700.0))
 
 
-def text(report):
+def text(report: Json) -> str:
     """The report as lines for people."""
-    lines = [f"{report['grinds']} grinds", "parameter            value      95 % interval"]
+    lines = [
+        f"{report['grinds']} grinds",
+        "parameter            value      95 % interval",
+    ]
     for one in report["parameters"]:
         interval = f"{one['low']:.4g} to {one['high']:.4g}" if one["free"] else "fixed"
         unit = f" {one['unit']}" if one["unit"] else ""

@@ -1,14 +1,18 @@
 """The table of measured grinds that a calibration reads: columns by name, units in the names."""
 
+from __future__ import annotations
+
 import csv
 import difflib
 import math
 import re
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..base.kinds import Array, Floats, Json
 from ..base.regular_files import read_regular
 from ..engine import InputError, core
 from . import contacts
@@ -72,20 +76,20 @@ class Table(NamedTuple):
     """Measured grinds, (n,) float unless said. Unknown areas are nan; what is not in the file is None."""
 
     path: str
-    lines: np.ndarray  # of the file, from 1
-    force: np.ndarray  # N
-    speed: np.ndarray  # m/s
-    time: np.ndarray  # s of contact: of the grind, or ground length over feed
-    feed: np.ndarray  # mm/s, 0 where the grind is stationary
-    area: np.ndarray  # mm2
-    relative: np.ndarray  # (n, m) pressure over F/A on equal shares of the contact; nan: not known
-    wear: np.ndarray  # zeros if not in the file
+    lines: Array  # of the file, from 1
+    force: Floats  # N
+    speed: Floats  # m/s
+    time: Floats  # s of contact: of the grind, or ground length over feed
+    feed: Floats  # mm/s, 0 where the grind is stationary
+    area: Floats  # mm2
+    relative: Floats  # (n, m) pressure over F/A on equal shares of the contact; nan: not known
+    wear: Floats  # zeros if not in the file
     wear_kind: str  # "", "work", "volume" or "number"
-    spread: np.ndarray  # mm2: 1 for volumes, nan for depths over the contact area
-    measured: np.ndarray  # mm3 or mm; nan where only a prediction is asked for
-    notes: list  # texts for the user
+    spread: Floats  # mm2: 1 for volumes, nan for depths over the contact area
+    measured: Floats  # mm3 or mm; nan where only a prediction is asked for
+    notes: list[Any]  # texts for the user
 
-    def take(self, index):
+    def take(self, index: Array) -> Table:
         """The rows of ``index``, a mask or an array of places."""
         arrays = {
             key: value[index] for key, value in self._asdict().items() if hasattr(value, "dtype")
@@ -93,7 +97,12 @@ class Table(NamedTuple):
         return self._replace(**arrays)
 
 
-def read(path, wheel_diameter_mm=None, measured=True, contact=None):
+def read(
+    path: Path | str,
+    wheel_diameter_mm: float | None = None,
+    measured: bool = True,
+    contact: Json | None = None,
+) -> Table:
     """Table of a CSV file. ``measured``: whether the measured removal must be there;
     ``contact``: what the table does not say of it (contacts.of_machine). Raises InputError with file, line, column and what to do.
     """
@@ -108,7 +117,9 @@ def read(path, wheel_diameter_mm=None, measured=True, contact=None):
     )
 
 
-def split(path, canonical):
+def split(
+    path: Path | str, canonical: Callable[[str], str | None]
+) -> tuple[list[str | None], list[list[str]], list[int]]:
     """(names, rows of texts, their line numbers) of a CSV; ``canonical(name)``: None for no column of the table.
     Raises InputError.
     """
@@ -173,17 +184,20 @@ def split(path, canonical):
         if header is not None:
             what = core.Fact("calibration.a_row", "a row of measured grinds")
         raise InputError(
-            "calibration.empty", "{file}: there is not even {what} in it", file=path, what=what
+            "calibration.empty",
+            "{file}: there is not even {what} in it",
+            file=path,
+            what=what,
         )
     return header, rows, lines
 
 
-def small_name(name):
+def small_name(name: str) -> str:
     """A column's name in small letters, without what divides its words but '_'."""
     return re.sub(r"[\s\[\]()/.]+", "_", name.strip().lower().replace("\u00b5", "u")).strip("_")
 
 
-def _canonical(name):
+def _canonical(name: str) -> tuple[str, float] | None:
     """(canonical name of a column, factor to its unit), or None."""
     small = small_name(name)
     for canonical, aliases in COLUMNS.items():
@@ -193,8 +207,13 @@ def _canonical(name):
 
 
 def from_columns(
-    columns, wheel_diameter_mm=None, measured=True, path="grinds", lines=None, contact=None
-):
+    columns: Mapping[str, Sequence[Any]],
+    wheel_diameter_mm: float | None = None,
+    measured: bool = True,
+    path: str = "grinds",
+    lines: Sequence[int] | None = None,
+    contact: Json | None = None,
+) -> Table:
     """Table of columns by name (lists of numbers or texts). Raises InputError."""
     notes, raw, given, factor = [], {}, {}, {}
     for name, values in columns.items():
@@ -222,7 +241,11 @@ def from_columns(
                 second=name,
             )
         else:
-            raw[canonical], given[canonical], factor[canonical] = list(values), name, known[1]
+            raw[canonical], given[canonical], factor[canonical] = (
+                list(values),
+                name,
+                known[1],
+            )
     count = len(next(iter(raw.values()), ()))
     if count == 0:
         raise InputError("calibration.no_grind", "{file}: there is no grind in it", file=path)
@@ -286,11 +309,17 @@ def from_columns(
     return with_areas(table) if measured else table
 
 
-def _unknown(cell):
+def _unknown(cell: object) -> bool:
     return str(cell).strip().lower() in UNKNOWN
 
 
-def number(cell, place, shown, name, may_be_unknown=MAY_BE_UNKNOWN):
+def number(
+    cell: object,
+    place: Json,
+    shown: str,
+    name: str,
+    may_be_unknown: Collection[str] = MAY_BE_UNKNOWN,
+) -> float:
     """A cell as a number; nan where it may be unknown. Raises InputError."""
     if _unknown(cell):
         if name in may_be_unknown:
@@ -340,7 +369,7 @@ def number(cell, place, shown, name, may_be_unknown=MAY_BE_UNKNOWN):
     return value
 
 
-def _require(c, path, names, what):
+def _require(c: Mapping[str, Any], path: Any, names: Sequence[str], what: str) -> None:
     if not any(name in c for name in names):
         raise InputError(
             "calibration.no_column",
@@ -351,10 +380,13 @@ def _require(c, path, names, what):
         )
 
 
-def _speed(c, path, diameter, notes):
+def _speed(c: Mapping[str, Any], path: Any, diameter: float | None, notes: list[Any]) -> Floats:
     """Belt speed, m/s."""
     _require(
-        c, path, ("belt_speed_m_s", "rpm"), core.Fact("calibration.the_speed", "the belt's speed")
+        c,
+        path,
+        ("belt_speed_m_s", "rpm"),
+        core.Fact("calibration.the_speed", "the belt's speed"),
     )
     if "belt_speed_m_s" in c:
         return c["belt_speed_m_s"]
@@ -374,7 +406,9 @@ def _speed(c, path, diameter, notes):
     return math.pi * diameter / 1000.0 * c["rpm"] / 60.0
 
 
-def _exposure(c, path, lines, needed):
+def _exposure(
+    c: Mapping[str, Any], path: Any, lines: Any, needed: Any
+) -> tuple[Any, Any, Any, Any]:
     """(time s, feed mm/s or 0, spread mm2, measured figure)."""
     _require(
         c,
@@ -408,7 +442,10 @@ def _exposure(c, path, lines, needed):
             moving,
             path,
             lines,
-            core.Fact("calibration.the_width", "contact_width_mm, over which a pass removes it,"),
+            core.Fact(
+                "calibration.the_width",
+                "contact_width_mm, over which a pass removes it,",
+            ),
         )
     _complete(
         time,
@@ -422,12 +459,15 @@ def _exposure(c, path, lines, needed):
         moving,
         path,
         lines,
-        core.Fact("calibration.the_length", "length_mm, on which the volume of a pass depends,"),
+        core.Fact(
+            "calibration.the_length",
+            "length_mm, on which the volume of a pass depends,",
+        ),
     )
     return time * c.get("passes", np.ones(count)), feed, spread, figure
 
 
-def _complete(values, where, path, lines, what):
+def _complete(values: Any, where: Any, path: Any, lines: Any, what: str) -> None:
     bad = np.flatnonzero(where & np.isnan(values))
     if len(bad):
         raise InputError(
@@ -439,7 +479,7 @@ def _complete(values, where, path, lines, what):
         )
 
 
-def _area(c, contact, notes):
+def _area(c: Mapping[str, Any], contact: Json | None, notes: list[Any]) -> tuple[Any, Any]:
     """(contact area in mm2, nan where it is not known; relative pressures, see contacts.of_table)."""
     area, relative = contacts.of_table(c, contact, notes)
     given = c.get("area_mm2", np.full(len(area), math.nan))
@@ -457,7 +497,7 @@ def _area(c, contact, notes):
     return np.where(np.isnan(area), given, area), relative
 
 
-def with_areas(table):
+def with_areas(table: Table) -> Table:
     """The table with a nominal contact area if none is known; a note says what becomes of areas."""
     unknown = np.isnan(table.area)
     if unknown.all():

@@ -1,10 +1,21 @@
 """A whole program followed by the robot: its joints, and what its arm runs into. No grinding."""
 
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from ..base import records
+from ..base.kinds import Context, Json
 from ..engine import core
+from ..job.settings import Job, Robot
+from ..job.typed import typed
 from . import collision, events, reach
 
 
-def follow(path, robot, job=None, context=None):
+def follow(
+    path: core.ToolPath, robot: Json, job: Job | Json | None = None, context: Context = None
+) -> dict[str, Any]:
     """``reach.reach`` of a core.ToolPath, its events with those of the arm's collisions.
 
     ``robot``: as in a job, with its defaults. ``job``: a validated job for what the arm may meet (part,
@@ -18,9 +29,10 @@ def follow(path, robot, job=None, context=None):
     found["warnings"] = []
     if job is None:
         return found
-    shape = read_design(job["design"], context)
+    checked = replace(typed(job), robot=records.made(Robot, robot))
+    shape = read_design(checked.design, context)
     met = collision.check(
-        {**job, "robot": robot}, shape, [path], found["warnings"], context.part(0.5, 1.0), [found]
+        checked, shape, [path], found["warnings"], context.part(0.5, 1.0), [found]
     )
     for one in met:
         found["events"] = events.merge([(0, 0.0, found["events"] + one["events"])])

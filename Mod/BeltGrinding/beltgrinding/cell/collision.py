@@ -5,15 +5,24 @@ them. The part is its whole shape with its stock; the wheel is what lies behind 
 two rollers in place of the wheel, a platen its plate as well, both what holds them where a job says it.
 """
 
+from __future__ import annotations
+
 import math
+from collections.abc import Mapping, Sequence
+from types import ModuleType
+from typing import Any
 
 import numpy as np
 
-from ..base import frames, kept
+from ..base import frames, kept, records
+from ..base.kinds import Array, Context, Facts, Floats, Json, known
 from ..engine import InputError, core
-from ..job import fork, free_run, machine as machines, workpiece
-from ..job.bodies import PART, PLATE, ROLLERS, STOCK, WHEEL
+from ..geometry import fork, free_run
+from ..geometry.body_names import LINKS, PART, PLATE, ROLLERS, STOCK, WHEEL
+from ..job import machine as machines, workpiece
 from ..job.poses import program_name
+from ..job.settings import BeltMachine, Body, Job, Stock, Wheel
+from ..job.typed import typed
 from ..presets import robot as robots, robot_shape
 from . import tool_path
 
@@ -24,12 +33,20 @@ LONGEST = 1e7  # s of a program, some months
 LEAST_AROUND, MOST_AROUND = 12, 4000  # corners of a wheel's body
 
 
-def check(job, shape, paths, warnings, context=None, reached=()):
+def check(
+    job: Job | Json,
+    shape: core.Shape,
+    paths: Sequence[core.ToolPath],
+    warnings: Facts,
+    context: Context = None,
+    reached: Sequence[Json] = (),
+) -> list[dict[str, Any]]:
     """What ``core.check_collisions`` finds for each core.ToolPath of a validated job, kept for the next on the same way. ``shape``: the
     design's core.Shape; ``reached``: ``reach.job_reach`` of them, for the robot's own arm; [] if the job
     does not want it. Raises InputError, Cancelled.
     """
-    if not job["cell"]["check_collisions"]:
+    job = typed(job)
+    if not job.cell.check_collisions:
         return []
     if not shape.valid:  # OpenCASCADE's mesher may never end on its faults
         warnings.append(
@@ -42,7 +59,7 @@ def check(job, shape, paths, warnings, context=None, reached=()):
     context = context or core.RunContext()
     found = bodies(job, shape, warnings, context)
     if reached:
-        found += arm_bodies(job["robot"])
+        found += arm_bodies(records.plain(job.robot))
     for body in found:
         if not np.isfinite(body["mesh"].vertices).all():
             raise InputError(
@@ -50,7 +67,7 @@ def check(job, shape, paths, warnings, context=None, reached=()):
                 "cell: the body '{body}' is too large; check its sizes",
                 body=body["name"],
             )
-    clearance = float(job["cell"]["clearance_mm"])
+    clearance = float(job.cell.clearance_mm)
     results = []
     for i, path in enumerate(paths):
         part = context.part(i / len(paths), (i + 1) / len(paths))
@@ -66,19 +83,26 @@ def check(job, shape, paths, warnings, context=None, reached=()):
     return results
 
 
-def _met(job, path, found, clearance, arm, context):
+def _met(
+    job: Job,
+    path: core.ToolPath,
+    found: list[dict[str, Any]],
+    clearance: float,
+    arm: core.ArmInCell | None,
+    context: Context,
+) -> core.CollisionFindings:
     """core.CollisionFindings."""
 
-    def look():
+    def look() -> core.CollisionFindings:
         return core.find_collisions(path, found, clearance, arm=arm, context=context)
 
     _, way = tool_path.digests(path)
     if way is None:
         return look()
-    robot, steps = job["robot"], job["simulation"]
+    robot, steps = records.plain(job.robot), job.simulation
     followed = None
     if arm is not None:  # which decides what the joints do on the way, whatever time they take
-        followed = robot, robots.model_of(robot), steps["max_travel_mm"], steps["max_angle_deg"]
+        followed = robot, robots.model_of(robot), steps.max_travel_mm, steps.max_angle_deg
     met = [{**body, "mesh": [body["mesh"].vertices, body["mesh"].triangles]} for body in found]
     return kept.get(
         "collisions",
@@ -88,34 +112,37 @@ def _met(job, path, found, clearance, arm, context):
     )
 
 
-def bodies(job, shape, warnings, context=None):
+def bodies(
+    job: Job | Json, shape: core.Shape, warnings: Facts, context: Context = None
+) -> list[dict[str, Any]]:
     """The bodies of a validated job as ``core.check_collisions`` takes them."""
-    stock = job["stock"]
-    uniform = stock["kind"] == "allowance"
-    grown = max(0.0, stock["allowance_mm"] + stock["offset_mm"]) if uniform else 0.0
+    job = typed(job)
+    stock = job.stock
+    uniform = stock.kind == "allowance"
+    grown = max(0.0, stock.allowance_mm + stock.offset_mm) if uniform else 0.0
     mesh = _triangulate(shape, context)
     found = [{"name": PART, "frame": "part", "mesh": mesh, "margin": grown}]
     if not uniform:
         mesh = read_body(stock, "stock", warnings, context)
-        grown = max(0.0, stock["offset_mm"])
+        grown = max(0.0, stock.offset_mm)
         found.append({"name": STOCK, "frame": "part", "mesh": mesh, "margin": grown})
-    machine = job["belt_machine"]
+    machine = job.belt_machine
     if machines.wheel_presses(machine):
-        disc = wheel_body(machine["wheel"], job["cell"]["wheel_inset_mm"])
+        disc = wheel_body(machine.wheel, job.cell.wheel_inset_mm)
         if disc is not None:
             found.append({"name": WHEEL, "frame": "wheel", "mesh": disc})
     for name, mesh in machine_bodies(machine):
         found.append({"name": name, "frame": "wheel", "mesh": mesh})
-    for body in job["cell"]["bodies"]:
-        mesh = read_body(body, body["name"], warnings, context)
-        found.append({"name": body["name"], "frame": body["frame"], "mesh": mesh})
+    for body in job.cell.bodies:
+        mesh = read_body(body, body.name, warnings, context)
+        found.append({"name": body.name, "frame": body.frame, "mesh": mesh})
     return found
 
 
-def arm_bodies(robot):
+def arm_bodies(robot: Json) -> list[dict[str, Any]]:
     """The links of a job's robot (with its defaults) as ``core.check_collisions`` takes them."""
     found = []
-    for number, (name, parts) in enumerate(zip(robot_shape.LINKS, robots.links_of(robot))):
+    for number, (name, parts) in enumerate(zip(LINKS, robots.links_of(robot))):
         points, triangles = robot_shape.body(*parts)
         if len(triangles):
             mesh = core.TriangleMesh(points.astype(np.float32), triangles.astype(np.uint32))
@@ -123,16 +150,25 @@ def arm_bodies(robot):
     return found
 
 
-def read_body(body, name, warnings, context=None):
+def read_body(
+    body: Stock | Body | Json, name: str, warnings: Facts, context: Context = None
+) -> core.TriangleMesh:
     """core.TriangleMesh of a job's body or stock, in its frame. Raises InputError."""
+    placed = body.get("placement") if isinstance(body, Mapping) else body.placement
     try:
-        placement = frames.from_data(body.get("placement"))
+        placement = frames.from_data(records.plain(placed))
     except InputError as error:
         raise error.within("cell.placement", "{body}: placement: ", body=name) from None
 
-    def read():
+    def read() -> tuple[core.TriangleMesh, Facts]:
         if workpiece.is_mesh(body):
-            return core.read_mesh(body["file"], body["unit_mm"], placement, context), []
+            report: dict[str, Any] = {}
+            file, _, unit = workpiece.source(body)
+            mesh = core.read_mesh(known(file), known(unit), placement, context, report)
+            return mesh, [
+                core.Fact("cell.of_body", "{body}: {warning}", body=name, warning=fact)
+                for fact in report["warnings"]
+            ]
         shape = workpiece.read_shape(body, name, context)
         told = [
             core.Fact("cell.of_body", "{body}: {warning}", body=name, warning=text)
@@ -142,20 +178,24 @@ def read_body(body, name, warnings, context=None):
         points = mesh.vertices @ placement[:3, :3].T.astype(np.float32) + placement[:3, 3]
         return core.TriangleMesh(points.astype(np.float32), mesh.triangles), told
 
-    def parts():
+    def parts() -> tuple[Any, ...]:
         return workpiece.made_from(body), name, placement
 
-    mesh, told = kept.get("body", parts, read, lambda found: _mesh_bytes(found[0]))
+    mesh, told = kept.get("body", parts, read, _told_bytes)
     warnings += told
     return mesh
 
 
-def _mesh_bytes(mesh):
+def _told_bytes(found: tuple[core.TriangleMesh, Facts]) -> int:
+    return _mesh_bytes(found[0])
+
+
+def _mesh_bytes(mesh: core.TriangleMesh) -> int:
     return mesh.vertices.nbytes + mesh.triangles.nbytes
 
 
-def _triangulate(shape, context):
-    def make():
+def _triangulate(shape: core.Shape, context: Context) -> core.TriangleMesh:
+    def make() -> core.TriangleMesh:
         low, high = shape.extents()
         size = float(np.linalg.norm(np.subtract(high, low)))
         return core.triangulate(shape, max(DEFLECTION, LARGE * size), context)
@@ -164,10 +204,11 @@ def _triangulate(shape, context):
     return make() if name is None else kept.get("triangles", lambda: name, make, _mesh_bytes)
 
 
-def wheel_body(wheel, inset):
+def wheel_body(wheel: Wheel | Json, inset: float) -> core.TriangleMesh | None:
     """The wheel within its rim, ``inset`` mm below the belt's surface, as a core.TriangleMesh in the
     contact frame; None if nothing of it is left. ``wheel``: as in a job.
     """
+    wheel = records.made(Wheel, wheel)
     line = wheel_profile(wheel)
     line[:, 1] -= inset
     if line[:, 1].min() <= 0.0:
@@ -180,7 +221,7 @@ def wheel_body(wheel, inset):
     points = np.zeros((around, count, 3))
     points[..., 0] = np.sin(angles)[:, None] * line[:, 1]
     points[..., 1] = line[:, 0]
-    points[..., 2] = np.cos(angles)[:, None] * line[:, 1] - wheel["radius_mm"]
+    points[..., 2] = np.cos(angles)[:, None] * line[:, 1] - wheel.radius_mm
     i, k = np.meshgrid(np.arange(around), np.arange(count - 1), indexing="ij")
     a, b = i * count + k, (i + 1) % around * count + k
     # The outermost quads end on the axis: of each, one triangle.
@@ -197,21 +238,23 @@ def wheel_body(wheel, inset):
     return core.TriangleMesh(points.reshape(-1, 3).astype(np.float32), triangles.astype(np.uint32))
 
 
-def machine_bodies(machine):
+def machine_bodies(machine: BeltMachine | Json) -> list[tuple[str, core.TriangleMesh]]:
     """[(name, core.TriangleMesh in the contact frame)] of a job's free belt or platen: its rollers, with the belt round
     their outer sides, the plate behind the layers, the belt's runs beyond the rollers and the arms; of a small wheel the
     belt's runs and the fork. Of a contact wheel none. The belt between the rollers gives way.
     """
+    machine = records.made(BeltMachine, machine)
     if machines.kind(machine) == machines.SMALL_WHEEL:
         return _runs_and_arms(fork, machine)
     if machines.kind(machine) == machines.WHEEL:
         return []
-    run, found = machine["free_run"], []
-    radius = run["roller_radius_mm"]
+    run, found = known(machine.free_run), []
+    radius = run.roller_radius_mm
     if radius > 0.0:
-        roller = {"radius_mm": radius, "width_mm": run["width_mm"]}
+        roller = {"radius_mm": radius, "width_mm": run.width_mm}
         mesh = wheel_body({**roller, "crown_radius_mm": 0.0, "profile_mm": []}, 0.0)
         for name, (x, z) in zip(ROLLERS, free_run.roller_axes(machine)):
+            assert mesh is not None  # its inset is 0
             # A wheel's body has its axis at -radius.
             points = mesh.vertices + np.array([x, 0.0, z + radius], dtype=np.float32)
             found.append((name, core.TriangleMesh(points, mesh.triangles)))
@@ -222,7 +265,7 @@ def machine_bodies(machine):
     return found
 
 
-def _runs_and_arms(holder, machine):
+def _runs_and_arms(holder: ModuleType, machine: BeltMachine) -> list[tuple[str, core.TriangleMesh]]:
     """``holder``: the module that knows them."""
     found = [(name, holder.run(machine, side)) for name, side in zip(holder.NAMES, (-1.0, 1.0))]
     held = holder.arms(machine)
@@ -233,11 +276,11 @@ def _runs_and_arms(holder, machine):
     return [(name, _mesh(*solid)) for name, solid in found]
 
 
-def _mesh(points, faces):
+def _mesh(points: Array, faces: Array) -> core.TriangleMesh:
     return core.TriangleMesh(points.astype(np.float32), faces.astype(np.uint32))
 
 
-def _chord_angle(radius):
+def _chord_angle(radius: float) -> float:
     """The angle of a chord that leaves a circle of ``radius`` by DEFLECTION, or by no more than
     MOST_AROUND corners of the whole circle let it.
     """
@@ -245,14 +288,15 @@ def _chord_angle(radius):
     return max(angle, 2.0 * math.pi / MOST_AROUND)
 
 
-def wheel_profile(wheel):
+def wheel_profile(wheel: Wheel | Json) -> Floats:
     """Points [y, radius] (n, 2) in mm across a job's wheel."""
-    radius, width, crown = wheel["radius_mm"], wheel["width_mm"], wheel["crown_radius_mm"]
+    wheel = records.made(Wheel, wheel)
+    radius, width, crown = wheel.radius_mm, wheel.width_mm, wheel.crown_radius_mm
     parts = (
         math.ceil(2.0 * math.asin(0.5 * width / crown) / _chord_angle(crown)) if crown > 0 else 1
     )
     across = np.linspace(-0.5 * width, 0.5 * width, parts + 1)
-    turned = np.array(wheel["profile_mm"], dtype=float).reshape(-1, 2)
+    turned = np.array(wheel.profile_mm, dtype=float).reshape(-1, 2)
     if len(turned):
         across = np.union1d(across, turned[:, 0])
     drop = np.interp(across, turned[:, 0], turned[:, 1]) if len(turned) else np.zeros(len(across))
@@ -261,12 +305,13 @@ def wheel_profile(wheel):
     return np.stack([across, radius - drop], axis=1)
 
 
-def summary(found, paths):
+def summary(found: Sequence[Json], paths: Sequence[core.ToolPath]) -> list[dict[str, Any]]:
     """The least clearance of every pair of bodies, as summary.json has it, the nearest first.
 
     ``found``: what ``check`` gives for ``paths``.
     """
-    least, begin = {}, 0.0
+    least: dict[tuple[str, ...], dict[str, Any]] = {}
+    begin = 0.0
     for program, (result, path) in enumerate(zip(found, paths)):
         lines = path.lines()
         for pair in result["pairs"]:

@@ -1,12 +1,17 @@
 """Where motions of a program are left out: an event each, at the pose behind the gap."""
 
+from __future__ import annotations
+
+from typing import Any
+
 import numpy as np
 
+from ..base.kinds import Array
 from ..engine import core
 from .events import kinds, momentary
 
 
-def events(path, gaps):
+def events(path: core.ToolPath, gaps: Array) -> list[dict[str, Any]]:
     """Events of the core.ToolPath of a program, as the core gives them; ``gaps`` (n,): as
     ``Program.path_arrays`` has them."""
     places = np.flatnonzero(gaps).tolist()

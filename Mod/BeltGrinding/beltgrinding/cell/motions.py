@@ -6,29 +6,40 @@ Arrays of m values: ``program``, ``pose`` (both from 0), ``line`` (of the source
 program began; what earlier versions kept lacks ``time``.
 """
 
+from __future__ import annotations
+
 import csv
 import io
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TypeAlias, TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..base import cells
 from ..base.files import cannot_be_read
+from ..base.kinds import Array
 from ..engine import InputError
 
+if TYPE_CHECKING:
+    from ..engine import core
+
+Motions: TypeAlias = "Mapping[str, Array]"  # as ``of_paths`` gives them
 FILE = "motions.csv"
 COLUMNS = ("program", "pose", "line", "x_mm", "y_mm", "z_mm", "time_s")
 EARLIER = COLUMNS[:6]  # of what older versions wrote
 
 
-def of_paths(paths):
+def of_paths(paths: Sequence[core.ToolPath]) -> dict[str, Array]:
     """The motions of some core.ToolPath, one after the other."""
     counts = [len(path) for path in paths]
-    empty = np.zeros((0, 3))
+    empty, none = np.zeros((0, 3)), np.zeros(0, dtype=int)
     begins = np.cumsum([0.0, *(path.duration() for path in paths)])
     return {
         "program": np.repeat(np.arange(len(paths)), counts),
-        "pose": np.concatenate([np.arange(count) for count in counts] or [[]]).astype(int),
-        "line": np.concatenate([path.lines() for path in paths] or [[]]).astype(int),
+        "pose": np.concatenate([np.arange(count) for count in counts] or [none]).astype(int),
+        "line": np.concatenate([path.lines() for path in paths] or [none]).astype(int),
         "point": np.concatenate([empty, *(path.work_from_contact()[:, :3, 3] for path in paths)]),
         "time": np.concatenate(
             [[], *(path.times() + begin for path, begin in zip(paths, begins))]
@@ -36,7 +47,7 @@ def of_paths(paths):
     }
 
 
-def time_at(motions, motion, point):
+def time_at(motions: Motions, motion: int, point: ArrayLike) -> float:
     """When the tool passes nearest to ``point`` (3,), mm, on the motion of this number, s: as if it went straight and
     evenly from contact point to contact point."""
     ends, end = motions["time"], motions["point"][motion]
@@ -52,7 +63,7 @@ def time_at(motions, motion, point):
     return float(ends[motion - 1] + share * (ends[motion] - ends[motion - 1]))
 
 
-def csv_text(motions):
+def csv_text(motions: Motions) -> str:
     """One row a motion."""
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
@@ -65,7 +76,7 @@ def csv_text(motions):
     return text.getvalue()
 
 
-def read(path):
+def read(path: Path) -> dict[str, Array] | None:
     """What ``csv_text`` wrote to ``path`` (a pathlib.Path); None if there is no file. Raises
     InputError.
     """

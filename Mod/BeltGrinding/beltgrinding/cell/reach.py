@@ -1,17 +1,27 @@
 """What a robot's joints meet along a program. Joint angles are in degrees; frames are 4 x 4 in mm."""
 
+from __future__ import annotations
+
 import copy
 import csv
 import io
 import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..base import kept
+from ..base import kept, records
+from ..base.kinds import Array, Context, Json, known
 from ..engine import InputError
+from ..job.settings import Job, Simulation
+from ..job.typed import typed
 from ..presets.robot import arm_of, checked, given, model_of, name, robot_frame
 from ..presets.robot_model import JOINTS
 from . import tool_path
+
+if TYPE_CHECKING:
+    from ..engine import core
 
 MOMENT_BYTES, EVENT_BYTES = 200, 4000  # in memory, about
 EVENTS = (
@@ -24,46 +34,58 @@ EVENTS = (
 )
 
 
-def reach(path, robot, max_travel_mm=1.0, max_angle_deg=1.0, context=None):
+def reach(
+    path: core.ToolPath,
+    robot: Json | str,
+    max_travel_mm: float = 1.0,
+    max_angle_deg: float = 1.0,
+    context: Context = None,
+) -> dict[str, Any]:
     """What the joints do along a core.ToolPath.
 
     ``robot``: as in a job, or a preset's id. Returns dict(joints (n, 6) in degrees, one row per
     pose, NaN where the robot does not get; events, as a simulation has them; least, greatest (6,)
     in degrees; checks: how many places were looked at). Raises InputError, Cancelled.
     """
-    robot = checked({"preset": robot} if isinstance(robot, str) else robot)
-    if not given(robot):
+    wanted = checked({"preset": robot} if isinstance(robot, str) else robot)
+    if not given(wanted):
         raise InputError(
             "cell.no_robot",
             "{key}: give a preset or a model; without one its reach is not known",
             key="robot",
         )
     options = {
-        "base_from_robot": robot_frame(robot, "base_from_robot"),
-        "flange_from_tcp": robot_frame(robot, "flange_from_tcp"),
+        "base_from_robot": robot_frame(wanted, "base_from_robot"),
+        "flange_from_tcp": robot_frame(wanted, "flange_from_tcp"),
         "max_travel": float(max_travel_mm),
         "max_angle": math.radians(max_angle_deg),
-        "singularity": math.radians(robot["singularity_deg"]),
-        "flip": math.radians(robot["flip_deg"]),
+        "singularity": math.radians(wanted["singularity_deg"]),
+        "flip": math.radians(wanted["flip_deg"]),
     }
-    if robot["start_joints_deg"]:
-        options["start"] = np.radians(np.array(robot["start_joints_deg"], dtype=float))
-    found = arm_of(robot).reach(path, options, context=context)
+    if wanted["start_joints_deg"]:
+        options["start"] = np.radians(np.array(wanted["start_joints_deg"], dtype=float))
+    found = known(arm_of(wanted)).reach(path, options, context=context)
     for key in ("joints", "least", "greatest"):
         found[key] = np.degrees(found[key])
     return found
 
 
-def job_reach(job, paths, context=None):
+def job_reach(
+    job: Job | Json, paths: Sequence[core.ToolPath], context: Context = None
+) -> list[dict[str, Any]]:
     """``reach`` of each core.ToolPath of a validated job; [] if the job has no robot. Kept for the next of the
     same ways and times."""
-    if not given(job["robot"]):
+    job = typed(job)
+    robot = records.plain(job.robot)
+    if not given(robot):
         return []
-    return [_kept_reach(path, job["robot"], job["simulation"], context) for path in paths]
+    return [_kept_reach(path, robot, job.simulation, context) for path in paths]
 
 
-def _kept_reach(path, robot, steps, context):
-    wanted = robot, steps["max_travel_mm"], steps["max_angle_deg"]
+def _kept_reach(
+    path: core.ToolPath, robot: Json, steps: Simulation, context: Context
+) -> dict[str, Any]:
+    wanted = robot, steps.max_travel_mm, steps.max_angle_deg
     timed, _ = tool_path.digests(path)
     if timed is None:
         return reach(path, *wanted, context)
@@ -71,16 +93,20 @@ def _kept_reach(path, robot, steps, context):
         "reach",
         lambda: (timed, wanted, model_of(robot)),
         lambda: reach(path, *wanted, context),
-        lambda found: MOMENT_BYTES * len(found["arm"]) + EVENT_BYTES * len(found["events"]),
+        _found_bytes,
     )
     return {**found, "events": copy.deepcopy(found["events"])}
 
 
-def summary(robot, found):
+def _found_bytes(found: Json) -> float:
+    return MOMENT_BYTES * len(found["arm"]) + EVENT_BYTES * len(found["events"])
+
+
+def summary(robot: Json, found: Sequence[Json]) -> dict[str, Any]:
     """Figures of ``job_reach`` as summary.json has them."""
     if not found:
         return {}
-    of = arm_of(robot)
+    of = known(arm_of(robot))
     least = np.fmin.reduce([one["least"] for one in found])
     greatest = np.fmax.reduce([one["greatest"] for one in found])
     poses = sum(len(one["joints"]) for one in found)
@@ -99,7 +125,7 @@ def summary(robot, found):
     return figures
 
 
-def joints_csv(found, paths_lines):
+def joints_csv(found: Sequence[Json], paths_lines: Sequence[Array]) -> str:
     """CSV of the joints at every pose: program and pose from 1, source line, six angles in degrees,
     which are empty where the robot does not get.
     """

@@ -1,39 +1,54 @@
 """The way of the wheel over the work that a job's program commands."""
 
-import weakref
+from __future__ import annotations
 
-from ..base import kept
+import weakref
+from typing import Any
+
+from ..base import kept, records
+from ..base.kinds import Array, Facts, Json
 from ..engine import InputError, core
 from ..job.engine_input import time_law
 from ..job.poses import program_arrays, program_name
+from ..job.settings import Job
+from ..job.typed import typed
 from ..job.workpiece import frame_of
 from ..presets import robot as robots
 
-_made_from = weakref.WeakKeyDictionary()  # of every core.ToolPath: what it was made from
+_made_from: weakref.WeakKeyDictionary[
+    core.ToolPath, dict[str, Any]
+] = weakref.WeakKeyDictionary()  # of every core.ToolPath: what it was made from
 CELL_FRAMES = ("base_from_work", "tcp_from_contact", "tcp_from_work", "base_from_contact")
 
 
-def tool_path(job, index, warnings, count=None, gaps=None):
+def tool_path(
+    job: Job | Json,
+    index: int,
+    warnings: Facts,
+    count: int | None = None,
+    gaps: list[Array] | None = None,
+) -> core.ToolPath:
     """core.ToolPath of the job's program number ``index``; of its first ``count`` poses. ``gaps``: a list
     that its gaps are added to, as ``Program.path_arrays`` has them."""
+    job = typed(job)
     where = program_name(job, index)
     arrays = program_arrays(
-        job["programs"][index],
+        job.programs[index],
         where,
         warnings,
-        robots.pose_function(job["robot"]),
-        job["cell"]["holding"],
+        robots.pose_function(records.plain(job.robot)),
+        job.cell.holding,
     )
     left_out = arrays.pop("gaps")
     if gaps is not None:
         gaps.append(left_out)
     arrays = {name: values[:count] for name, values in arrays.items()}
-    cell = {name: frame_of(job["cell"].get(name), f"cell.{name}") for name in CELL_FRAMES}
-    given = {
+    cell = {name: frame_of(getattr(job.cell, name), f"cell.{name}") for name in CELL_FRAMES}
+    given: dict[str, Any] = {
         **arrays,
         **cell,
-        "holding": job["cell"]["holding"],
-        "time_law": time_law(job["simulation"]),
+        "holding": job.cell.holding,
+        "time_law": time_law(job.simulation),
     }
     try:
         path = core.ToolPath(**given)
@@ -43,7 +58,12 @@ def tool_path(job, index, warnings, count=None, gaps=None):
     return path
 
 
-def digests(path):
+def motions(path: core.ToolPath) -> dict[str, Array]:
+    """What a core.ToolPath that ``tool_path`` made was made from: dict of feeds, forces, rapid and more, an entry a pose."""
+    return _made_from[path]
+
+
+def digests(path: core.ToolPath) -> tuple[str, str] | tuple[None, None]:
     """(digest of all that a core.ToolPath was made from but its forces, the same of what its way depends on,
     whatever time it takes), for ``kept``; None, None for a path that ``tool_path`` has not made."""
     given = _made_from.get(path)

@@ -59,6 +59,21 @@ JSON_ERRORS = "--json-errors"
 ALL = "--all"
 
 
+LARGEST, SMALLEST = 1e15, 1e-15  # numbers of the command line
+
+
+def _number(kind):
+    """A number that something can be: argparse tells of ValueErrors."""
+
+    def read(text):
+        value = kind(text)
+        if value != 0 and not SMALLEST <= abs(value) <= LARGEST:  # NaN is neither
+            raise ValueError(text)
+        return value
+
+    return read
+
+
 class _Parser(argparse.ArgumentParser):
     """Takes ``--json-errors`` and ``--all`` before and after the command; its own errors are JSON then, too."""
 
@@ -78,6 +93,8 @@ class _Parser(argparse.ArgumentParser):
             help="each warning in a line of its own; many of a kind are told in one",
         )
         self.as_json = False
+        self.register("type", float, _number(float))
+        self.register("type", int, _number(int))
 
     def parse_known_args(self, args=None, namespace=None):
         self.as_json = JSON_ERRORS in (sys.argv[1:] if args is None else args)
@@ -88,7 +105,7 @@ class _Parser(argparse.ArgumentParser):
             super().error(message)
         data = {"code": "cli.usage", "message": f"{self.prog}: {message}", "culprit": {}}
         data.update(arguments={"reason": message}, context=[], remarks=[])
-        self.exit(2, json.dumps({"error": data}) + "\n")
+        self.exit(2, json.dumps({"error": data}, allow_nan=False) + "\n")
 
 
 def _parser():
@@ -114,9 +131,9 @@ def main(argv=None):
     try:
         with faults.standard_streams():
             status = _main(argv, messages)
-    except KeyboardInterrupt:  # before a command has begun, or while an error is told
-        return _interrupted(messages)
-    except OSError as error:
+    except KeyboardInterrupt as error:  # before a command has begun, or while an error is told
+        return _interrupted(messages, error)
+    except Exception as error:  # of output, or memory
         status = _other_error(error, messages)
     return status
 
@@ -144,45 +161,45 @@ def _main(argv, messages):
     try:
         from ..engine import Cancelled, InputError, core
     except ImportError as error:
+        if faults.of_memory(error):
+            return faults.out_of_memory(messages)
         print(f"beltgrind: {error}", file=sys.stderr)
         return 2
     try:
         if arguments.version:
-            print(json.dumps(core.versions()))
+            print(json.dumps(core.versions(), allow_nan=False))
         elif arguments.command is None:
             _parser().print_usage(sys.stderr)
             return 2
         else:
+            arguments.status = 0  # a command may set it
             arguments.do(arguments)
     except InputError as error:
         messages.print_error(error)
         return 2
-    except (KeyboardInterrupt, Cancelled):
-        return _interrupted(messages)
-    except MemoryError:
-        messages.print_error(
-            InputError(
-                "cli.out_of_memory",
-                "out of memory; close other programs, or take a smaller part or coarser settings",
-            )
-        )
-        return 2
+    except (KeyboardInterrupt, Cancelled) as error:
+        return _interrupted(messages, error)
     except BrokenPipeError:
         raise
     except Exception as error:
         return _other_error(error, messages)
-    return 0
+    return getattr(arguments, "status", 0)
 
 
 def _other_error(error, messages):
+    if faults.of_memory(error):
+        return faults.out_of_memory(messages)
     if not faults.of_output(error):
         return faults.ours(error, messages)
     messages.print_error(faults.output_error(error))
     return 2
 
 
-def _interrupted(messages):
+def _interrupted(messages, interruption):
     try:
+        if isinstance(interruption, interrupts.Interrupted):
+            messages.print_error(interruption.error)
+            return 130
         from ..base.files import last_written
         from ..engine import InputError
 

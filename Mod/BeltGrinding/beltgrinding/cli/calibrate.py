@@ -105,19 +105,21 @@ def _calibrate_scan(arguments):
         arguments.result, arguments.scan, arguments.unit_mm, offset=arguments.offset
     )
     calibration.write(law, arguments.output)
-    print(json.dumps(figures))
+    print(json.dumps(figures, allow_nan=False))
 
 
 def _predict(arguments):
     from ..base import schemas
     from ..calibration import law as calibration_law
+    from ..job.law import check_calibration
 
     outputs.check(arguments, [arguments.output], [arguments.law, arguments.table])
     law = schemas.checked(
         schemas.read_json(Path(arguments.law)), schemas.schema("job")["properties"]["law"], "law"
     )
+    check_calibration(law["calibration"])
     found = calibration_law.compare(law, arguments.table, arguments.wheel_diameter)
     if arguments.output:
         calibration_law.write_predictions(found, arguments.output)
     arguments.messages.print_warnings(found["notes"])
-    print(json.dumps(found["figures"]))
+    print(json.dumps(found["figures"], allow_nan=False))

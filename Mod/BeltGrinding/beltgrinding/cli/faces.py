@@ -53,7 +53,7 @@ def _faces(arguments):
         except OSError as error:
             raise cannot_be_written(arguments.picture, error) from None
     if arguments.json:
-        print_text(json.dumps([one.data() for one in found], indent=1))
+        print_text(json.dumps([one.data() for one in found], indent=1, allow_nan=False))
     else:
         print_text(faces.text(found))
     if drawn is not None and drawn[1] and not arguments.json:

@@ -9,6 +9,13 @@ import tempfile
 import time
 import traceback
 
+WITHOUT_MEMORY = (
+    "pthread_create has failed",
+    "can't start new thread",
+    "std::bad_alloc",
+    "Cannot allocate memory",
+    "failed to map segment",
+)
 OUTPUT_ERRORS = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EBADF, errno.EFBIG)
 
 
@@ -51,6 +58,35 @@ def output_error(error):
     return InputError(
         "cli.output", "standard output cannot be written: {reason}", reason=reason_of(error)
     )
+
+
+def of_memory(error):
+    """Whether an error comes of memory that ran out, also of what libraries make of that."""
+    while error is not None:
+        text = str(error)
+        if isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM:
+            return True
+        if any(words in text for words in WITHOUT_MEMORY):
+            return True
+        error = error.__cause__ or error.__context__
+    return False
+
+
+def out_of_memory(messages):
+    """Says so; the exit status. The core may not have been loaded, for the same reason."""
+    try:
+        from ..engine import InputError
+
+        messages.print_error(
+            InputError(
+                "cli.out_of_memory",
+                "out of memory; close other programs, or take a smaller part or coarser settings",
+            )
+        )
+    except Exception:
+        with contextlib.suppress(OSError):
+            os.write(2, b"beltgrind: out of memory; close other programs\n")
+    return 2
 
 
 def ours(error, messages):

@@ -63,3 +63,4 @@ def _report(result, arguments, said):
         f"results in {arguments.output}"
     )
     print_text(verdict.text(result.verdict))
+    arguments.messages.print_events(result.events, result.job)

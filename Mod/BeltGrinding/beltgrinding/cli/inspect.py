@@ -90,4 +90,4 @@ def _section(arguments):
             section.write_svg(found, path, arguments.mode, arguments.exaggeration)
         else:
             section.write_csv(found, path)
-    print(json.dumps(section.summary(found)))
+    print(json.dumps(section.summary(found), allow_nan=False))

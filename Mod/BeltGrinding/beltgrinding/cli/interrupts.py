@@ -7,6 +7,14 @@ import sys
 TEXT = "interrupted; nothing was written"
 
 
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C, with an InputError that says what of the work is kept."""
+
+    def __init__(self, error):
+        super().__init__()
+        self.error = error
+
+
 def stop(*_):
     """Ends the process at once. Wherever something is to be tidied up, ``base.files.interruptible`` makes
     Ctrl-C a KeyboardInterrupt; anywhere else one could come inside an import, where C code takes it for

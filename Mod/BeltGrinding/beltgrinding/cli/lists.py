@@ -43,4 +43,4 @@ def _presets(arguments):
 def _schema(arguments):
     from ..base import schemas
 
-    print(json.dumps(schemas.schema(arguments.name), indent=2))
+    print(json.dumps(schemas.schema(arguments.name), indent=2, allow_nan=False))

@@ -54,7 +54,7 @@ def _mesh(arguments):
         quiet=True,
     )
     arguments.messages.print_warnings(found.pop("warnings"))
-    print(json.dumps(found))
+    print(json.dumps(found, allow_nan=False))
 
 
 def _scan(arguments):
@@ -83,4 +83,4 @@ def _scan(arguments):
     )
     scan.write(result, figures)
     arguments.messages.print_warnings(figures["warnings"])
-    print(json.dumps(figures))
+    print(json.dumps(figures, allow_nan=False))

@@ -10,6 +10,7 @@ import unicodedata
 
 CONTROLS = ("Cc", "Cf", "Cs")
 LANGUAGES = ("en", "de")
+HANDFUL = 8  # lines about a program; what matters most to its path comes first
 
 
 def of_locale():
@@ -32,18 +33,33 @@ class Messages:
     def print_error(self, error):
         """An InputError, one line on standard error."""
         if self.as_json:
-            text = json.dumps({"error": error_data(error)})
+            text = json.dumps({"error": error_data(error)}, allow_nan=False)
         else:
             text = "beltgrind: " + " ".join(self._sentence(error).split())
         _to_stderr(text)
 
     def print_warnings(self, warnings):
-        """Sentences or facts, a line each; many of a kind in one line, unless ``everything`` is set."""
+        """Sentences or facts, a line each; many of a kind in one line and no more than ``HANDFUL`` of what programs
+        have, unless ``everything`` is set."""
         from ..base.grouping import grouped
 
         told = list(warnings)
         shown = told if self.everything else grouped(told)
-        self._print("cli.warning", "warning", shown)
+        rest = [] if self.everything else [one for one in shown if _of_program(one)][HANDFUL:]
+        self._print("cli.warning", "warning", [one for one in shown if not _within(one, rest)])
+        if rest:
+            from ..engine import Fact
+
+            self.print_notes(
+                [
+                    Fact(
+                        "cli.more_problems",
+                        "{count} more lines about the program; {option} prints all",
+                        count=len(rest),
+                        option="--all",
+                    )
+                ]
+            )
         if len(shown) < len(told):
             from ..engine import Fact
 
@@ -55,6 +71,16 @@ class Messages:
                 option="--all",
             )
             self.print_notes([note])
+
+    def print_events(self, events, job):
+        """What went wrong on a run's way, a line for each kind of event, errors first."""
+        from ..cell.event_lines import lines
+
+        for severity, one in lines(events, job):
+            if severity == "error":
+                self._print("cli.error", "error", [one])
+            else:
+                self._print("cli.warning", "warning", [one])
 
     def print_notes(self, notes):
         """Facts that are no warnings, a line each."""
@@ -71,6 +97,18 @@ class Messages:
         from ..base.messages import sentence
 
         return sentence(told, self.language)
+
+
+def _within(one, others):
+    return any(one is other for other in others)
+
+
+def _of_program(told):
+    """Whether a fact, or the first of several as one, is of a program that is read."""
+    code = getattr(told, "code", "")
+    if code.startswith("base.more_alike"):
+        return _of_program(told.arguments["first"])
+    return code.startswith("programs.")
 
 
 def print_text(text):

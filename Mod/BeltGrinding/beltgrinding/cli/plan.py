@@ -55,6 +55,7 @@ def _plan(arguments):
         arguments.messages.print_warnings(warnings)
         if not arguments.quiet:
             print_text(text(plans.summary(found)))
+            arguments.messages.print_events(found.after.events, found.after.job)
             names = ", ".join(written) if written else "poses in job.json"
             print_text(f"programs: {names}; results in {folder}")
         return found, laid

@@ -53,7 +53,7 @@ def _contact(arguments):
         figures.update(reference.compare(result, truth))
     if arguments.output:
         contact.write_csv(result, arguments.output, truth)
-    print(json.dumps(figures))
+    print(json.dumps(figures, allow_nan=False))
 
 
 def _surrogate(arguments):
@@ -86,4 +86,4 @@ def _surrogate(arguments):
             surrogate_file.save_database(database, arguments.database)
     trained, report = surrogate.train(database, arguments.seed)
     surrogate_file.save(trained, arguments.output)
-    print(json.dumps(report))
+    print(json.dumps(report, allow_nan=False))

@@ -12,7 +12,7 @@ def add(commands):
     program = commands.add_parser(
         "program",
         help="read a robot program, write changes back into it, or convert it",
-        usage="beltgrind program FILE [-o POSES.csv]\n"
+        usage="beltgrind program FILE [-o POSES.csv] [--strict]\n"
         "       beltgrind program write ORIGINAL CHANGES.csv -o NEW\n"
         "       beltgrind program convert FILE -o NEW.src|.mod|.script|.csv",
         description="Says what is in a robot program. write: changed speeds, forces and offsets "
@@ -31,6 +31,16 @@ def add(commands):
         "--values",
         metavar="JSON",
         help="what only the controller knows (default: NAME.values.json beside the program)",
+    )
+    program.add_argument(
+        "--units",
+        choices=("mm", "inch"),
+        help="of lengths in a file that does not say them (APT without UNITS, G-code without G20 or G21)",
+    )
+    program.add_argument(
+        "--strict",
+        action="store_true",
+        help="exit status 1 where a motion is left out; convert writes nothing then",
     )
     program.add_argument(
         "--write-values",
@@ -155,7 +165,7 @@ def _frame_words(job):
 
 def _program(arguments):
     from ..base.files import cannot_be_written, write_whole
-    from ..engine import InputError
+    from ..engine import Fact, InputError
     from ..programs import given, table
     from ..programs.patch.patch import patch
     from ..programs.registry import read_program
@@ -190,31 +200,83 @@ def _program(arguments):
         raise InputError(
             "cli.write_values", "program {action}: --write-values is for reading", action=action
         )
-    if arguments.values and (action == "write" or arguments.write_values):
+    if (arguments.values or arguments.units) and (action == "write" or arguments.write_values):
         raise InputError(
             "cli.values_beside",
-            "--values: program write and --write-values take the file beside the program only",
+            "{option}: program write and --write-values take the file beside the program only",
+            option="--values" if arguments.values else "--units",
         )
     outputs.check(arguments, [arguments.output], files)
     notes = []
     try:
         if action == "write":
             changed = patch(*files, arguments.output)
-            print(json.dumps({"changed": len(changed), "motions": changed}, indent=2))
+            print(
+                json.dumps({"changed": len(changed), "motions": changed}, indent=2, allow_nan=False)
+            )
             return
-        program = read_program(files[0], **_roll(arguments), values=arguments.values)
-        if action == "convert":
+        program = read_program(
+            files[0], **_roll(arguments), values=arguments.values, units=arguments.units
+        )
+        read, said = program.counted()
+        arguments.status = int(arguments.strict and read < said)
+        if action == "convert" and arguments.status == 0 and read:
             notes = write_program(arguments.output, None, program, **_frames(arguments))
         elif arguments.write_values:
-            file, count = given.write_template(program, files[0])
-            print(json.dumps({"values": str(file), "to_be_given": count}))
+            data, varies = given.explored(
+                program, files[0], lambda values: read_program(files[0], values=values)
+            )
+            file, count = given.write_template(program, files[0], data)
+            print(json.dumps({"values": str(file), "to_be_given": count}, allow_nan=False))
+            arguments.status = 0
+            if varies:
+                note = Fact(
+                    "cli.more_values",
+                    "which values are asked for depends on those to be given; run --write-values again when they are "
+                    "filled in",
+                )
+                arguments.messages.print_notes([note])
             return
-        elif arguments.output:
+        elif action == "read" and arguments.output and read:
             write_whole(Path(arguments.output), table.poses_csv(program).encode())
     except OSError as error:
         raise cannot_be_written(arguments.output, error) from None
     arguments.messages.print_notes(notes)
-    print(json.dumps(table.summary(program, arguments.messages.everything), indent=2))
+    found = table.summary(program, arguments.messages.everything)
+    print(json.dumps(found, indent=2, allow_nan=False))
+    _tell_read(arguments, program, read, said)
+
+
+def _tell_read(arguments, program, read, said):
+    """How much of a program is read, and what it still asks for. Raises InputError where nothing is."""
+    from ..engine import Fact, InputError
+    from ..programs import given
+    from ..programs.problems import ordered
+
+    missing = given.missing(program)
+    notes = []
+    if missing:
+        names = ", ".join(name or '""' for name in missing[:8]) + (
+            ", ..." if len(missing) > 8 else ""
+        )
+        notes.append(
+            Fact(
+                "cli.program_asks",
+                "the program asks for what only the controller knows ({names}); --write-values writes a file to be "
+                "filled in",
+                names=names,
+            )
+        )
+    if read == 0:
+        arguments.messages.print_notes(notes)
+        raise InputError(
+            "cli.no_motion_read",
+            "{file}: no motion is read: {problem}",
+            file=program.file,
+            problem=ordered(program.problems)[0].message,
+        )
+    notes.append(Fact("cli.motions_read", "read {read} of {said} motions", read=read, said=said))
+    arguments.messages.print_notes(notes)
 
 
 def _raster(arguments):
@@ -242,7 +304,7 @@ def _raster(arguments):
         _write_raster(arguments, arguments.output, job, found)
         if drawn is not None:
             _write_picture(arguments.picture, drawn)
-        print(json.dumps(raster.summary(found)))
+        print(json.dumps(raster.summary(found), allow_nan=False))
         return
     steps = [(job, wanted)] + [(raster.load_job(one), wanted) for one, _ in arguments.then]
     laid, places = background.run(lambda context: in_turn(steps, context), quiet=True)
@@ -252,7 +314,7 @@ def _raster(arguments):
             _write_raster(arguments, file, one, found)
     left = float(places["areas"][places["left"]].sum() / places["areas"].sum())
     summaries = [None if found is None else raster.summary(found) for found in laid]
-    print(json.dumps({"wheels": summaries, "left_by_all": left}))
+    print(json.dumps({"wheels": summaries, "left_by_all": left}, allow_nan=False))
 
 
 def _laid_and_drawn(job, settings, picture, context):
@@ -314,4 +376,8 @@ def _reach(arguments):
     arguments.messages.print_warnings(warnings)
     begins = [sum(path.duration() for path in paths[:i]) for i in range(len(paths))]
     events = event_lists.merge([(i, begins[i], one["events"]) for i, one in enumerate(found)])
-    print(json.dumps({**reach.summary(given["robot"], found), "events": events}, indent=2))
+    print(
+        json.dumps(
+            {**reach.summary(given["robot"], found), "events": events}, indent=2, allow_nan=False
+        )
+    )

@@ -4,7 +4,7 @@ import os
 import sys
 from pathlib import Path
 
-from . import background, outputs, plan_batch, settings, where
+from . import background, interrupts, outputs, plan_batch, settings, where
 from .messages import print_text
 
 
@@ -81,12 +81,12 @@ def _sort(arguments):
                 arguments.scheduler,
                 arguments.again,
                 chunk,
+                arguments.tls,
             ),
             quiet=True,
         )
-    except KeyboardInterrupt:
-        arguments.messages.print_notes(_kept(last, arguments.output))
-        raise
+    except KeyboardInterrupt as error:
+        raise _kept(last, arguments.output) or error from None
     if chunk is not None:
         return
     sorting_report.write(arguments.output, batch, job, arguments.share, arguments.language)
@@ -117,19 +117,20 @@ def _command(arguments):
 
 
 def _kept(last, folder):
-    """[Fact] of what is finished when the sorting is interrupted."""
-    from ..engine import Fact
+    """The Interrupted that tells what is finished; None where nothing was begun."""
+    from ..engine import InputError
 
-    return [
-        Fact(
+    if not last:
+        return None
+    return interrupts.Interrupted(
+        InputError(
             "studies.parts_kept",
-            "{done} of {parts} parts are sorted and kept in {folder}; the same command goes on from there",
-            done=progress.done,
-            parts=progress.parts,
+            "interrupted; {done} of {parts} parts are sorted and kept in {folder}; the same command goes on from there",
+            done=last[0].done,
+            parts=last[0].parts,
             folder=folder,
         )
-        for progress in last
-    ]
+    )
 
 
 def _why(row):

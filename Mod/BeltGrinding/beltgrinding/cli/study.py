@@ -5,7 +5,7 @@ import sys
 import time
 from pathlib import Path
 
-from . import background, where
+from . import background, interrupts, where
 from .messages import print_text
 
 LOG_S = 60.0  # between two lines of progress where standard error is no terminal
@@ -75,14 +75,13 @@ def _study(arguments):
             arguments.again,
             chunk,
             [arguments.study],
+            arguments.tls,
         )
 
     try:
         found = background.run(work, quiet=True)
-    except KeyboardInterrupt:
-        shown.end()
-        arguments.messages.print_notes(shown.kept(arguments.output))
-        raise
+    except KeyboardInterrupt as error:
+        raise shown.kept(arguments.output) or error from None
     finally:
         shown.end()
     _tell(found, arguments, chunk)
@@ -184,20 +183,20 @@ class _Shown:
             self.shown = False
 
     def kept(self, folder):
-        """[Fact] of what is finished when the study is interrupted."""
-        from ..engine import Fact
+        """The Interrupted that tells what is finished; None where nothing was begun."""
+        from ..engine import InputError
 
         if self.last is None:
-            return []
-        return [
-            Fact(
+            return None
+        return interrupts.Interrupted(
+            InputError(
                 "studies.kept",
-                "{done} of {runs} runs are finished and kept in {folder}; the same command goes on from there",
+                "interrupted; {done} of {runs} runs are finished and kept in {folder}; the same command goes on from there",
                 done=self.last.done,
                 runs=self.last.runs,
                 folder=folder,
             )
-        ]
+        )
 
 
 def line(progress):

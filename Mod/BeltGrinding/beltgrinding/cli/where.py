@@ -15,13 +15,27 @@ def add(parser, tasks, task):
         help=f"processes of this machine (default: one a core); 0: none, one {task} after the other",
     )
     where.add_argument(
-        "--scheduler", metavar="ADDRESS", help="of a Dask cluster that is there, as tcp://host:8786"
+        "--scheduler", metavar="ADDRESS", help="of a Dask cluster that is there, as tls://host:8786"
     )
     where.add_argument(
         "--slurm",
         type=int,
         metavar="N",
         help="write the script of a Slurm array of N jobs, run nothing",
+    )
+    tls = parser.add_mutually_exclusive_group()
+    tls.add_argument(
+        "--tls",
+        metavar="FILE",
+        help="with --scheduler: a PEM file with the key and its certificate, which nobody else may read (default: as Dask is "
+        "configured)",
+    )
+    tls.add_argument(
+        "--without-tls",
+        action="store_const",
+        const=False,
+        dest="tls",
+        help="with --scheduler: ask it without TLS; whoever reaches its port can run programs as you",
     )
     parser.add_argument("--submit", action="store_true", help="with --slurm: hand it to sbatch")
     parser.add_argument(

@@ -6,14 +6,18 @@ element (GAPUNI) to a rigid, frictionless workpiece at the contact's own gap. Th
 the contact has it; the force and the pressure are the answer.
 """
 
+from __future__ import annotations
+
 import shutil
 import subprocess
 import tempfile
 import time
 from pathlib import Path
+from typing import Any, TypeAlias
 
 import numpy as np
 
+from ..base.kinds import Array, Floats, Json
 from ..engine import InputError
 
 MARGIN = 1.5  # rim thicknesses meshed beyond the contact's grid
@@ -21,8 +25,10 @@ GROWTH = 1.35  # of the elements away from the contact
 PENALTY = 1e4  # N/mm per mm2 of a node: below 0.1 um of penetration at 1 MPa
 TIME_LIMIT = 3600  # s
 
+Index: TypeAlias = Any  # int, or an array of such
 
-def solve(contact, rim, keep=None):
+
+def solve(contact: Json, rim: Json, keep: Path | str | None = None) -> dict[str, Any]:
     """Solves ``contact`` (as ``contact.run`` gives it) again; ``rim``: dict(radius, thickness,
     youngs_modulus, poissons_ratio), mm and MPa. ``keep``: a folder for the deck and its results.
 
@@ -77,7 +83,7 @@ def solve(contact, rim, keep=None):
     }
 
 
-def compare(contact, reference):
+def compare(contact: Json, reference: Json) -> dict[str, Any]:
     """Figures of the difference: force at the same approach; pressure at the same force (L1), on the
     corners of the cells, where the finite elements have their nodes. Both on the undeformed wheel.
     """
@@ -94,12 +100,12 @@ def compare(contact, reference):
     }
 
 
-def _undeformed(contact):
+def _undeformed(contact: Json) -> dict[str, Any]:
     """The contact on the cells of the undeformed wheel."""
     return {**contact, **contact.get("undeformed", {})}
 
 
-def _graded(first, length):
+def _graded(first: float, length: float) -> Floats:
     """Places from 0 to ``length``, steps growing from ``first``."""
     steps = [first]
     while sum(steps) < length:
@@ -112,7 +118,7 @@ class _Mesh:
     """Nodes on lines in arc length, axis and radius; node (i, j, l) has the number
     (l * ny + j) * nx + i + 1, l = 0 on the surface."""
 
-    def __init__(self, contact, rim):
+    def __init__(self, contact: Json, rim: Json) -> None:
         x, y = contact["x"], contact["y"]
         ds, dy = x[1] - x[0], (y[1] - y[0] if len(y) > 1 else contact["cell_area"] / (x[1] - x[0]))
         inside = np.concatenate([x - 0.5 * ds, [x[-1] + 0.5 * ds]])
@@ -131,10 +137,10 @@ class _Mesh:
         self.areas = np.outer(weights[1], weights[0])  # (y, s), mm2
         self.normals = np.stack([np.sin(angle), 0.0 * angle, np.cos(angle)], axis=-1)
 
-    def node(self, i, j, layer):
+    def node(self, i: Index, j: Index, layer: Index) -> Index:
         return (layer * len(self.y) + j) * len(self.s) + i + 1
 
-    def bricks(self):
+    def bricks(self) -> Array:
         """(n, 8) node numbers."""
         i, j, l = np.meshgrid(
             np.arange(len(self.s) - 1),
@@ -158,25 +164,25 @@ class _Mesh:
         return np.stack([*low, *high], axis=1)
 
 
-def _corner_gaps(contact):
+def _corner_gaps(contact: Json) -> Floats:
     """Gap at the corners of the cells: the mean of the cells around that the workpiece covers."""
     gap = np.where(contact["coverage"] > 0, contact["gap"], np.inf)
     known = np.isfinite(gap)
     padded = np.pad(np.where(known, gap, 0.0), 1)
     count = np.pad(known.astype(float), 1)
 
-    def around(a):
+    def around(a: Floats) -> Floats:
         return a[:-1, :-1] + a[1:, :-1] + a[:-1, 1:] + a[1:, 1:]
 
     total = around(count)
     return np.where(total > 0, around(padded) / np.maximum(total, 1), np.inf)
 
 
-def _cells(corners):
+def _cells(corners: Floats) -> Floats:
     return 0.25 * (corners[:-1, :-1] + corners[1:, :-1] + corners[:-1, 1:] + corners[1:, 1:])
 
 
-def _deck(mesh, contact, rim):
+def _deck(mesh: _Mesh, contact: Json, rim: Json) -> str:
     nu = rim["poissons_ratio"]
     gaps = _corner_gaps(contact)
     lines = ["*NODE, NSET=RIM"]
@@ -185,7 +191,9 @@ def _deck(mesh, contact, rim):
     bricks = mesh.bricks()
     lines += [f"{e},{','.join(map(str, row))}" for e, row in enumerate(bricks.tolist(), 1)]
     count, element = len(mesh.points), len(bricks)
-    grounds, gap_cards, boundary = [], [], []
+    grounds: list[str] = []
+    gap_cards: list[str] = []
+    boundary: list[str] = []
     for j in range(mesh.shape[1]):
         for i in range(mesh.shape[0]):
             number = j * mesh.shape[0] + i
@@ -235,7 +243,7 @@ def _deck(mesh, contact, rim):
     return "\n".join(lines)
 
 
-def _read_forces(path, mesh):
+def _read_forces(path: Path, mesh: _Mesh) -> Floats | None:
     """Pressing force of every surface node, (y, s), N, at the end of the step; None if it was not
     reached. CalculiX prints every increment that it took.
     """

@@ -1,15 +1,21 @@
 """Single contacts of a wheel, for people who study it: with an analytic workpiece, or at a pose."""
 
+from __future__ import annotations
+
 import time
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from ..base import schemas
+from ..base import records, schemas
 from ..base.files import cannot_be_written, either, in_file, write_whole
+from ..base.kinds import Context, Facts, Json
 from ..cell import tool_path as tool_paths
 from ..engine import InputError, core
 from ..job import engine_input, machine as machines
+from ..job.settings import Compliance, Layer, Wheel
 from ..job.workpiece import apply_stock, make_field, read_design
 from ..presets import rubber
 
@@ -17,7 +23,7 @@ DEFAULT_MODULUS = 5.0  # MPa
 LAYERED = ("wheel_rim", "elastic_foundation")  # models that a rim of several rubbers is known to
 
 
-def load(path):
+def load(path: Path | str) -> dict[str, Any]:
     """Reads and validates a contact file (contact.schema.json). Raises InputError."""
     path = Path(path)
     try:
@@ -26,11 +32,11 @@ def load(path):
         raise in_file(error, path) from None
 
 
-def validate(contact, folder="."):
-    """A copy of ``contact`` with all defaults and paths absolute (relative to ``folder``). Raises
+def validate(given: Json, folder: Path | str = ".") -> dict[str, Any]:
+    """A copy of ``given`` with all defaults and paths absolute (relative to ``folder``). Raises
     InputError naming the key that is wrong.
     """
-    contact = schemas.checked(contact, schemas.schema("contact"), "contact")
+    contact: dict[str, Any] = schemas.checked(given, schemas.schema("contact"), "contact")
     if ("force_N" in contact) == ("approach_mm" in contact):
         raise InputError(
             "base.exactly_one",
@@ -80,7 +86,7 @@ def validate(contact, folder="."):
     return contact
 
 
-def run(contact):
+def run(contact: Json) -> dict[str, Any]:
     """Solves a validated contact. Returns dict(x (nx,) mm along the circumference, y (ny,) mm along
     the axis, pressure (ny, nx) MPa, coverage (ny, nx), force N, approach mm, contact_area mm2,
     peak_pressure MPa, iterations, converged, time s, model, cell_area mm2, rows_beside). The pressure
@@ -92,29 +98,28 @@ def run(contact):
         (key if key.endswith("_deg") else key.removesuffix("_mm")): value
         for key, value in workpiece.items()
     }
-    shape = {
-        "radius": float(wheel["outer_radius_mm"]),
-        "width": float(wheel["width_mm"]),
-        "crown_radius": float(wheel["crown_radius_mm"]),
-        "profile": wheel["profile_mm"],
-    }
+    shape = Wheel(
+        radius_mm=wheel["outer_radius_mm"],
+        width_mm=wheel["width_mm"],
+        crown_radius_mm=wheel["crown_radius_mm"],
+        profile_mm=wheel["profile_mm"],
+    )
+    elasticity = Compliance(
+        model=contact["model"],
+        youngs_modulus_MPa=modulus(wheel),
+        poissons_ratio=wheel["poissons_ratio"],
+        rim_thickness_mm=wheel["rim_thickness_mm"],
+        belt_tension_N_per_mm=wheel["belt_tension_N_per_mm"],
+        belt_bending_N_mm=wheel["belt_bending_N_mm"],
+        stiffness_MPa_per_mm=wheel["stiffness_MPa_per_mm"],
+        surrogate_file=contact["surrogate_file"],
+        layers=tuple(records.made(Layer, layer) for layer in wheel["layers"]),
+        dynamic_modulus_factor=1.0,
+    )
     result = core.single_contact(
         shape,
         given,
-        engine_input.compliance_arguments(
-            {
-                "model": contact["model"],
-                "youngs_modulus_MPa": modulus(wheel),
-                "poissons_ratio": wheel["poissons_ratio"],
-                "rim_thickness_mm": wheel["rim_thickness_mm"],
-                "belt_tension_N_per_mm": wheel["belt_tension_N_per_mm"],
-                "belt_bending_N_mm": wheel["belt_bending_N_mm"],
-                "stiffness_MPa_per_mm": wheel["stiffness_MPa_per_mm"],
-                "surrogate_file": contact["surrogate_file"],
-                "layers": wheel["layers"],
-            },
-            shape,
-        ),
+        engine_input.elasticity_of(elasticity, shape),
         contact.get("force_N"),
         contact.get("approach_mm"),
         float(contact["spacing_mm"]),
@@ -123,7 +128,7 @@ def run(contact):
     return _displaced(result)
 
 
-def _displaced(result):
+def _displaced(result: Json) -> dict[str, Any]:
     """The contact as the core gives it, with the pressure where it acts, in rows beyond the wheel's
     side faces as well. What it was is in ``undeformed``.
     """
@@ -151,7 +156,7 @@ def _displaced(result):
     }
 
 
-def at_pose(job, pose, program=1, context=None):
+def at_pose(job: Json, pose: int, program: int = 1, context: Context = None) -> dict[str, Any]:
     """The contact of a validated job at a pose of a program (both numbered from 1), on the surface
     as it is when the robot gets there. Returns what ``run`` does, and gap (ny, nx), coverage.
     Raises InputError, Cancelled.
@@ -163,7 +168,7 @@ def at_pose(job, pose, program=1, context=None):
             program=program,
             count=len(job["programs"]),
         )
-    warnings = []
+    warnings: Facts = []
     path = tool_paths.tool_path(job, program - 1, warnings)
     if not 1 <= pose <= len(path):
         raise InputError(
@@ -175,22 +180,21 @@ def at_pose(job, pose, program=1, context=None):
     context = context or core.RunContext()
     field = make_field(job, read_design(job["design"], context), warnings, context)
     apply_stock(field, job["stock"], warnings, context)
-    wheel, compliance, law, options = engine_input.engine_arguments(job)
+    at = engine_input.of(job)
     before = [tool_paths.tool_path(job, i, warnings) for i in range(program - 1)]
     if pose > 1:
         before.append(tool_paths.tool_path(job, program - 1, warnings, pose))
     for ground in before:
-        without = {**options, "must_touch": False, "shifted_laws": [], "trace": False}
+        without = replace(at, must_touch=False, shifted_laws=(), trace=False)
         if ground.grinds():
-            done = core.simulate(field, ground, wheel, compliance, law, without, context)
-            options["belt"] = done["belt"]
+            at = replace(at, belt=core.simulate(field, ground, without, context)["belt"])
     start = time.perf_counter()
-    result = core.contact_at(field, path, pose - 1, wheel, compliance, options)
+    result = core.contact_at(field, path, pose - 1, at)
     result["time"] = time.perf_counter() - start
     return _displaced(result)
 
 
-def rim_of(wheel_radius_mm, elasticity):
+def rim_of(wheel_radius_mm: float, elasticity: Json) -> dict[str, float]:
     """The rim that ``reference.solve`` takes. ``elasticity``: a dict with the keys of a job's
     compliance. Raises InputError for a rim of several rubbers.
     """
@@ -206,7 +210,7 @@ def rim_of(wheel_radius_mm, elasticity):
     }
 
 
-def rim(contact):
+def rim(contact: Json) -> dict[str, float]:
     """The rim of a validated contact, or of a validated job."""
     if "belt_machine" in contact:
         what = core.Fact("contact.finite_elements", "contacts are solved by finite elements")
@@ -217,14 +221,14 @@ def rim(contact):
     return rim_of(wheel["outer_radius_mm"], {**wheel, "youngs_modulus_MPa": modulus(wheel)})
 
 
-def modulus(wheel):
+def modulus(wheel: Json) -> float:
     """Young's modulus of a contact's wheel, MPa."""
     if "shore_a" in wheel:
         return rubber.modulus(wheel["shore_a"])
     return wheel.get("youngs_modulus_MPa", DEFAULT_MODULUS)
 
 
-def summary(result):
+def summary(result: Json) -> dict[str, Any]:
     """The figures of a contact, as the command line prints them."""
     return {
         "force_N": result["force"],
@@ -238,7 +242,7 @@ def summary(result):
     }
 
 
-def write_csv(result, path, reference=None):
+def write_csv(result: Json, path: Path | str, reference: Json | None = None) -> None:
     """Writes x_mm, y_mm, p_MPa of every cell of the footprint, and p_reference_MPa if there is one.
     Raises InputError.
     """

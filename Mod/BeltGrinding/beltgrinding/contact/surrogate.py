@@ -4,11 +4,18 @@ After Zhang, Kuhlenkötter and Kneupner, Int. J. Machine Tools & Manufacture 45 
 is made here, from the wheel rim or from CalculiX, or brought along; both files are numpy archives.
 """
 
+from __future__ import annotations
+
 import time
+from types import ModuleType
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
+from ..base.kinds import Array, Floats, Json
 from ..engine import InputError, core
+from ..job.settings import Compliance, Wheel
 from ..job.surrogate_file import LEAST_CONTACTS, WHEEL, core_arguments
 from . import single_contact as contacts
 
@@ -19,7 +26,7 @@ COST, EPSILON = 10.0, 0.02
 GAMMA = 0.9  # over the number of features
 
 
-def wheel_of(contact):
+def wheel_of(contact: Json) -> dict[str, float]:
     """The wheel of a validated contact, as a surrogate's file names it."""
     if contact["wheel"]["profile_mm"]:
         raise InputError(
@@ -35,7 +42,7 @@ def wheel_of(contact):
     return {key: float(wheel[key]) for key in WHEEL}
 
 
-def random_gap(random, wheel, ds):
+def random_gap(random: np.random.Generator, wheel: Json, ds: float) -> tuple[Floats, Floats]:
     """A random surface under the wheel: gap (ny, nx) mm from first touch, inf where there is none,
     and coverage. Curved either way, tilted, rippled, stepped, or a strip with free edges.
     """
@@ -47,10 +54,10 @@ def random_gap(random, wheel, ds):
         (np.arange(nx) - (nx - 1) / 2) * ds, (np.arange(ny) - (ny - 1) / 2) * width / ny
     )
 
-    def log_uniform(low, high):
+    def log_uniform(low: float, high: float) -> float:
         return np.exp(random.uniform(np.log(low), np.log(high)))
 
-    def curvature(most_concave):
+    def curvature(most_concave: float) -> float:
         if random.random() < 0.3:
             return 0.0
         return max(
@@ -94,7 +101,13 @@ def random_gap(random, wheel, ds):
     return gap - gap.min(), coverage
 
 
-def make_database(contact, count=CONTACTS, source="wheel_rim", seed=1, tell=None):
+def make_database(
+    contact: Json,
+    count: int = CONTACTS,
+    source: str = "wheel_rim",
+    seed: int = 1,
+    tell: Callable[[int, int], object] | None = None,
+) -> dict[str, Any]:
     """Solves ``count`` random contacts of the validated contact's wheel, on its ``spacing_mm``,
     under a fifth of its ``force_N`` up to twice of it. ``source``: 'wheel_rim' or 'ccx'.
     ``tell(done, count)`` hears of progress. Returns a database (see docs/contact.md).
@@ -110,8 +123,9 @@ def make_database(contact, count=CONTACTS, source="wheel_rim", seed=1, tell=None
             least=LEAST_CONTACTS,
         )
     wheel, ds = wheel_of(contact), float(contact["spacing_mm"])
-    shape, elasticity = _core_wheel(wheel), {**_core_compliance(wheel), "model": "wheel_rim"}
-    random, rows, start = np.random.default_rng(seed), [], time.perf_counter()
+    shape, elasticity = _core_wheel(wheel), _elasticity(wheel)
+    random, start = np.random.default_rng(seed), time.perf_counter()
+    rows: list[tuple[Any, ...]] = []
     tried = 0
     while len(rows) < count:
         tried += 1
@@ -149,7 +163,7 @@ def make_database(contact, count=CONTACTS, source="wheel_rim", seed=1, tell=None
     }
 
 
-def _finite_elements(reference, solved, rim):
+def _finite_elements(reference: ModuleType, solved: Json, rim: Json) -> dict[str, Any] | None:
     try:
         return reference.solve(solved, rim)
     except InputError as error:
@@ -158,7 +172,7 @@ def _finite_elements(reference, solved, rim):
         raise
 
 
-def train(database, seed=1):
+def train(database: Json, seed: int = 1) -> tuple[dict[str, Any], dict[str, Any]]:
     """Trains on nine tenths of a database's contacts, tries itself on the rest. Returns
     (surrogate: what ``save`` writes, report: dict of figures).
     """
@@ -167,7 +181,8 @@ def train(database, seed=1):
     order = random.permutation(count)
     held = order[: max(1, int(HELD_OUT * count))]
     wheel, ds = database["wheel"], float(database["ds"])
-    features, targets = [], []
+    rows: list[Floats] = []
+    wanted: list[Floats] = []
     for k in order[len(held) :]:
         gap, coverage = database["gap"][k], database["coverage"][k]
         approach = float(database["approach"][k])
@@ -175,10 +190,10 @@ def train(database, seed=1):
             gap, coverage, ds, wheel["width_mm"], approach, ds, wheel["rim_thickness_mm"]
         )
         chosen = random.permutation(len(cells))[:SAMPLES]
-        features.append(values[chosen])
+        rows.append(values[chosen])
         greatest = approach - gap[coverage > 0].min()
-        targets.append(database["pressure"][k].ravel()[cells[chosen]] / greatest)
-    features, targets = np.concatenate(features), np.concatenate(targets)
+        wanted.append(database["pressure"][k].ravel()[cells[chosen]] / greatest)
+    features, targets = np.concatenate(rows), np.concatenate(wanted)
     start = time.perf_counter()
     regression = core.train_regression(features, targets, COST, GAMMA / features.shape[1], EPSILON)
     seconds = time.perf_counter() - start
@@ -197,7 +212,7 @@ def train(database, seed=1):
     return surrogate, report
 
 
-def _held_out(surrogate, database, held):
+def _held_out(surrogate: Json, database: Json, held: Array) -> dict[str, float]:
     errors, approaches, times = [], [], []
     arguments, shape = core_arguments(surrogate, "held out"), _core_wheel(surrogate["wheel"])
     for k in held:
@@ -217,19 +232,25 @@ def _held_out(surrogate, database, held):
     }
 
 
-def _core_wheel(wheel):
-    return {
-        "radius": wheel["outer_radius_mm"],
-        "width": wheel["width_mm"],
-        "crown_radius": wheel["crown_radius_mm"],
-    }
+def _core_wheel(wheel: Json) -> Wheel:
+    return Wheel(
+        radius_mm=wheel["outer_radius_mm"],
+        width_mm=wheel["width_mm"],
+        crown_radius_mm=wheel["crown_radius_mm"],
+        profile_mm=(),
+    )
 
 
-def _core_compliance(wheel):
-    return {
-        "youngs_modulus": wheel["youngs_modulus_MPa"],
-        "poissons_ratio": wheel["poissons_ratio"],
-        "rim_thickness": wheel["rim_thickness_mm"],
-        "belt_tension": wheel["belt_tension_N_per_mm"],
-        "belt_bending": wheel["belt_bending_N_mm"],
-    }
+def _elasticity(wheel: Json) -> Compliance:
+    return Compliance(
+        model="wheel_rim",
+        youngs_modulus_MPa=wheel["youngs_modulus_MPa"],
+        poissons_ratio=wheel["poissons_ratio"],
+        rim_thickness_mm=wheel["rim_thickness_mm"],
+        layers=(),
+        belt_tension_N_per_mm=wheel["belt_tension_N_per_mm"],
+        belt_bending_N_mm=wheel["belt_bending_N_mm"],
+        dynamic_modulus_factor=1.0,
+        stiffness_MPa_per_mm=0.0,
+        surrogate_file="",
+    )

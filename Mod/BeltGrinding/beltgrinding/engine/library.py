@@ -5,17 +5,20 @@ A release carries several cores side by side, told apart by the tag of their Pyt
 built (cmake/BeltGrindingInstall.cmake).
 """
 
+from __future__ import annotations
+
 import importlib
 import importlib.machinery
 import json
 import os
 import sys
 from pathlib import Path
+from types import ModuleType
 
 NAME = "beltgrinding_core"
 
 
-def places():
+def places() -> list[Path]:
     """Folders in which a core may lie: installed beside this package, or a checkout's build."""
     package = Path(__file__).resolve().parents[1]
     found = [package.parent, package.parents[2] / "build" / "release" / "python"]
@@ -24,15 +27,17 @@ def places():
     return found
 
 
-def built_for(core):
+def built_for(core: Path) -> dict[str, str]:
     """What a core was built for: {"system", "python", "opencascade"}, or {} where nobody says."""
     try:
-        return json.loads(core.with_name(core.name + ".json").read_text(encoding="utf-8"))
+        told = core.with_name(core.name + ".json").read_text(encoding="utf-8")
+        built: dict[str, str] = json.loads(told)
     except (OSError, ValueError):
         return {}
+    return built
 
 
-def load():
+def load() -> ModuleType:
     """Imports the core. ImportError says what this FreeCAD needs, what is there, what to do."""
     looked = places()
     suffixes = tuple(importlib.machinery.EXTENSION_SUFFIXES)
@@ -58,16 +63,16 @@ def load():
         raise ImportError(message(reason), name=NAME) from error
 
 
-def extension(name):
+def extension(name: str) -> ModuleType:
     """Imports a module that is built and installed beside the core. Raises ImportError."""
     core = sys.modules.get(NAME) or load()
-    place = str(Path(core.__file__).parent)
+    place = str(Path(core.__file__ or "").parent)
     if place not in sys.path:
         sys.path.append(place)
     return importlib.import_module(name)
 
 
-def message(reason):
+def message(reason: object) -> str:
     """The whole message: the reason, the cores that are there, and the ways out."""
     lines = [f"The compiled core of the belt-grinding workbench does not fit. {reason}"]
     known = [built_for(core) for place in places() for core in _cores(place)]
@@ -84,16 +89,16 @@ def message(reason):
     return "\n".join(lines)
 
 
-def _cores(place):
+def _cores(place: Path) -> list[Path]:
     return sorted(place.glob(f"{NAME}*.so"))
 
 
-def _words(one):
+def _words(one: dict[str, str]) -> str:
     python, opencascade = one.get("python", "?"), one.get("opencascade", "?")
     return f"{one.get('system', '?')}: Python {python}, OpenCASCADE {opencascade}"
 
 
-def _check_opencascade(built, core):
+def _check_opencascade(built: dict[str, str], core: Path) -> None:
     """Two generations of OpenCASCADE in one process share names and crash: refuses before that."""
     if "FreeCAD" not in sys.modules or "opencascade" not in built:
         return

@@ -105,5 +105,5 @@ def make(folder):
         "programs": [{"file": "blade_pressure_side.src"}],
         "inspection": {"tolerance_mm": [-0.05, 0.05], "colour_limit_mm": 0.3},
     }
-    (folder / "job.json").write_text(json.dumps(job, indent=2) + "\n")
+    (folder / "job.json").write_text(json.dumps(job, indent=2, allow_nan=False) + "\n")
     return folder / "job.json"

@@ -136,5 +136,5 @@ def make(folder):
         "simulation": {"timing": "trapezoidal"},
         "inspection": {"tolerance_mm": TOLERANCE, "colour_limit_mm": ALLOWANCE},
     }
-    (folder / "job.json").write_text(json.dumps(job, indent=2) + "\n")
+    (folder / "job.json").write_text(json.dumps(job, indent=2, allow_nan=False) + "\n")
     return folder / "job.json"

@@ -175,5 +175,5 @@ def make(folder):
         "programs": [{"file": "tap_spout.src"}],
         "inspection": {"tolerance_mm": TOLERANCE, "colour_limit_mm": ALLOWANCE},
     }
-    (folder / "job.json").write_text(json.dumps(job, indent=2) + "\n")
+    (folder / "job.json").write_text(json.dumps(job, indent=2, allow_nan=False) + "\n")
     return folder / "job.json"

@@ -72,5 +72,5 @@ def make(folder):
         "inspection": {"tolerance_mm": TOLERANCE, "colour_limit_mm": ALLOWANCE},
     }
     job = presets.apply(job, machine=MACHINE)
-    (folder / "job.json").write_text(json.dumps(job, indent=2) + "\n")
+    (folder / "job.json").write_text(json.dumps(job, indent=2, allow_nan=False) + "\n")
     return folder / "job.json"

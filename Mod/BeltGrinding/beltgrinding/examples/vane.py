@@ -181,5 +181,5 @@ def make(folder):
         "programs": [{"file": "vane.mod"}],
         "inspection": {"tolerance_mm": TOLERANCE, "colour_limit_mm": ALLOWANCE},
     }
-    (folder / "job.json").write_text(json.dumps(job, indent=2) + "\n")
+    (folder / "job.json").write_text(json.dumps(job, indent=2, allow_nan=False) + "\n")
     return folder / "job.json"

@@ -1,5 +1,7 @@
 """The languages of the workbench: compiled translations, which FreeCAD chooses from."""
 
+from __future__ import annotations
+
 import os
 from pathlib import Path
 
@@ -8,7 +10,7 @@ import FreeCADGui as Gui
 from ..base.resources import resources
 
 
-def folders():
+def folders() -> list[Path]:
     """Where compiled translations lie: installed in Resources, in a checkout where it is built."""
     places = [resources() / "translations"]
     build = os.environ.get("BELTGRINDING_BUILD")
@@ -16,7 +18,7 @@ def folders():
     return [place for place in places if any(place.glob("*.qm"))]
 
 
-def register():
+def register() -> None:
     """Tells FreeCAD where the translations are, and lets its present language take them in."""
     found = folders()
     for folder in found:

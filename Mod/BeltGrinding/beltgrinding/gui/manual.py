@@ -3,7 +3,10 @@
 Qt reads Markdown by itself, so that no browser and no network is needed.
 """
 
+from __future__ import annotations
+
 from pathlib import Path
+from typing import Any
 
 import FreeCAD
 import FreeCADGui as Gui
@@ -11,6 +14,7 @@ import FreeCADGui as Gui
 from ..base.resources import documentation
 from .common.compat import QtCore, QtGui, translate
 from .common.icons import icon
+from .common.kinds import Widget
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 SIZE = 960, 800  # of the window at first, pixels
@@ -20,12 +24,12 @@ MARGIN = 40  # beside a picture, pixels: the page's own and the scroll bar
 class ManualView(QtGui.QTextBrowser):
     """Shows pages; a picture is never wider than the window."""
 
-    def __init__(self, parent=None):
+    def __init__(self, parent: Widget = None) -> None:
         super().__init__(parent)
         self.setObjectName("BeltGrinding_ManualView")
         self.setOpenExternalLinks(True)
 
-    def loadResource(self, kind, url):
+    def loadResource(self, kind: Any, url: Any) -> Any:
         content = super().loadResource(kind, url)
         if kind != QtGui.QTextDocument.ImageResource:
             return content
@@ -36,7 +40,7 @@ class ManualView(QtGui.QTextBrowser):
         return picture.scaledToWidth(width, QtCore.Qt.SmoothTransformation)
 
 
-def show_manual(page="index.md"):
+def show_manual(page: str = "index.md") -> Widget:
     """Opens a page of docs/ in a window, the same one each time; returns it."""
     window = Gui.getMainWindow()
     dialog = window.findChild(QtGui.QDialog, "BeltGrinding_Manual")
@@ -71,7 +75,7 @@ class Manual:
 
     NAME = "BeltGrinding_Manual"
 
-    def GetResources(self):
+    def GetResources(self) -> dict[str, str]:
         return {
             "Pixmap": icon(self.NAME),
             "MenuText": QT_TRANSLATE_NOOP("BeltGrinding_Manual", "Help"),
@@ -81,8 +85,8 @@ class Manual:
             "CmdType": "ForEdit",  # changes nothing: stays there while a panel is open
         }
 
-    def IsActive(self):
+    def IsActive(self) -> bool:
         return True
 
-    def Activated(self, index=0):
+    def Activated(self, index: int = 0) -> None:
         show_manual()

@@ -1,5 +1,9 @@
 """The page in FreeCAD's preferences: defaults of new jobs, threads, colours, unit of deviations."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+
 import FreeCAD
 import FreeCADGui as Gui
 from FreeCAD import Units
@@ -9,6 +13,7 @@ from ..objects import preferences
 from ..objects.deviation import Deviation
 from ..objects.proxy import type_of
 from .common.compat import QtGui, translate
+from .common.kinds import Colour, Layout, Widget
 from .common.messages import error_text
 from .widgets.form import quantity_field, show_quantity
 from .widgets.steady import steady
@@ -19,7 +24,7 @@ MOST_THREADS = 1024
 class PreferencesPage:
     """FreeCAD makes one when its preferences open, and calls loadSettings and saveSettings."""
 
-    def __init__(self, *_):
+    def __init__(self, *_: object) -> None:
         self.form = QtGui.QWidget()
         self.form.setWindowTitle(translate("BeltGrinding", "General"))
         body = QtGui.QVBoxLayout(self.form)
@@ -28,7 +33,7 @@ class PreferencesPage:
         body.addWidget(self._deviation())
         body.addStretch()
 
-    def _new_jobs(self):
+    def _new_jobs(self) -> Widget:
         texts = (
             translate("BeltGrinding", "Sample spacing"),
             translate("BeltGrinding", "Lower limit"),
@@ -46,7 +51,7 @@ class PreferencesPage:
             self.defaults[name] = field
         return box
 
-    def _simulation(self):
+    def _simulation(self) -> Widget:
         box, rows = _group(translate("BeltGrinding", "Simulation"))
         self.threads = steady(QtGui.QSpinBox())
         self.threads.setObjectName("Threads")
@@ -60,7 +65,7 @@ class PreferencesPage:
         rows.addRow(translate("BeltGrinding", "Threads"), self.threads)
         return box
 
-    def _deviation(self):
+    def _deviation(self) -> Widget:
         box, rows = _group(translate("BeltGrinding", "Deviation"))
         self.unit = steady(QtGui.QComboBox())
         self.unit.setObjectName("DeviationUnit")
@@ -96,11 +101,11 @@ class PreferencesPage:
         rows.addRow("", standard)
         return box
 
-    def _show_colours(self, packed):
+    def _show_colours(self, packed: Sequence[int]) -> None:
         for button, colour in zip(self.colours.values(), packed):
             button.show_colour(colour)
 
-    def loadSettings(self):
+    def loadSettings(self) -> None:
         """Shows what is set."""
         for name, field in self.defaults.items():
             show_quantity(field, Units.Quantity(preferences.job_default(name), Units.Length))
@@ -110,7 +115,7 @@ class PreferencesPage:
         self.unit.setCurrentIndex(symbols.index(preferences.deviation_unit().symbol))
         self._show_colours(preferences.colours() or preferences.standard_colours())
 
-    def saveSettings(self):
+    def saveSettings(self) -> None:
         """Stores what is shown, and lets it take effect."""
         group = preferences.parameters()
         values = {name: float(f.property("rawValue")) for name, f in self.defaults.items()}
@@ -136,7 +141,7 @@ class PreferencesPage:
         take_effect()
 
 
-def _group(title):
+def _group(title: str) -> tuple[Widget, Layout]:
     box = QtGui.QGroupBox(title)
     return box, QtGui.QFormLayout(box)
 
@@ -144,25 +149,25 @@ def _group(title):
 class ColourButton(QtGui.QPushButton):
     """Shows a colour, 0xRRGGBBAA, and asks for another one when pressed."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         super().__init__()
         self.clicked.connect(self.ask)
         self.show_colour(255)
 
-    def show_colour(self, colour):
+    def show_colour(self, colour: Colour) -> None:
         self.colour = int(colour)
         image = QtGui.QPixmap(32, 16)
         image.fill(QtGui.QColor(f"#{self.colour >> 8:06x}"))
         self.setIcon(QtGui.QIcon(image))
         self.setIconSize(image.size())
 
-    def ask(self):
+    def ask(self) -> None:
         chosen = QtGui.QColorDialog.getColor(QtGui.QColor(f"#{self.colour >> 8:06x}"), self)
         if chosen.isValid():
             self.show_colour(chosen.rgb() << 8 & 0xFFFFFF00 | 255)
 
 
-def take_effect():
+def take_effect() -> None:
     """Lets the preferences hold: the threads, and what is shown of all deviations that are open."""
     preferences.apply_threads()
     for dock in Gui.getMainWindow().findChildren(QtGui.QDockWidget):

@@ -1,5 +1,7 @@
 """The start of the workbench, also where its compiled core or a Python package is missing."""
 
+from __future__ import annotations
+
 import importlib
 
 import FreeCADGui as Gui
@@ -12,7 +14,7 @@ from .manual import Manual
 PACKAGES = "numpy", "jsonschema"  # else missed only when a job is made; package.xml names them
 
 
-def register():
+def register() -> tuple[dict[str, list[str]], list[str], dict[str, list[str]]]:
     """Tells FreeCAD the commands; returns ({toolbar: names}, names of the menu, {submenu: names}).
 
     Where something that they need cannot be loaded, says so in the report view and in one message,
@@ -30,7 +32,7 @@ def register():
     return toolbars, [*menu, "Separator", Manual.NAME], submenus
 
 
-def reason(error):
+def reason(error: ImportError) -> str:
     """An ImportError in the user's words."""
     if error.name == core_library.NAME:
         return str(error)

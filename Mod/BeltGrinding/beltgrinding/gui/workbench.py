@@ -4,7 +4,11 @@ Nothing here needs the compiled core before the workbench is chosen: where that 
 starts all the same, and ``start`` says so.
 """
 
+from __future__ import annotations
+
 import threading
+from collections.abc import Callable
+from typing import Any
 
 import FreeCAD
 import FreeCADGui as Gui
@@ -14,13 +18,14 @@ from ..objects import waiting
 from . import languages
 from .common.compat import QtGui
 from .common.icons import icon
+from .common.kinds import Context
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 NAME = QT_TRANSLATE_NOOP("Workbench", "Belt grinding")
 MENU = QT_TRANSLATE_NOOP("Workbench", "&Belt grinding")
 
 
-def describe(workbench):
+def describe(workbench: Any) -> None:
     """Gives the workbench's class what FreeCAD shows of it, in its language."""
     languages.register()
     workbench.Icon = icon("BeltGrinding_Workbench")
@@ -30,7 +35,7 @@ def describe(workbench):
     )
 
 
-def fill(workbench):
+def fill(workbench: Any) -> list[str]:
     """Toolbars and menu of the workbench, when it is chosen first; the commands of its toolbars, which are
     its context menu, too.
     """
@@ -49,14 +54,14 @@ def fill(workbench):
     return [name for names in toolbars.values() for name in names]
 
 
-def at_start():
+def at_start() -> None:
     """Offers the preferences, without what they need: everyone's FreeCAD starts through here."""
     waiting.wait_in_window = _wait
     Gui.addIconPath(str(resources() / "icons"))
     Gui.addPreferencePage(Preferences, QT_TRANSLATE_NOOP("QObject", "Belt grinding"))
 
 
-def _wait(work, text):
+def _wait(work: Callable[[Context], Any], text: str) -> Any:
     if threading.current_thread() is not threading.main_thread():
         return work(None)  # a macro's own thread holds nothing up, and may show no dialog
     from .common.waiting import wait  # not above: it needs the core
@@ -67,7 +72,7 @@ def _wait(work, text):
 class Preferences:
     """The page in FreeCAD's preferences; made of what needs the core only when they are opened."""
 
-    def __init__(self, *arguments):
+    def __init__(self, *arguments: object) -> None:
         try:
             from .preferences_page import PreferencesPage
         except ImportError as error:

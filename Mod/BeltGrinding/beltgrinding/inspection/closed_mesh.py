@@ -1,20 +1,28 @@
 """The ground part as one closed mesh: STL, PLY and 3MF for those who measure with other tools."""
 
+from __future__ import annotations
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..base.files import cannot_be_written, write_whole
+from ..base.kinds import Context
 from ..engine import InputError, core
 from ..job import workpiece
 from ..job.tolerances import colour_scale
+
+if TYPE_CHECKING:
+    from .ground import Ground
 
 DEFLECTION = 0.05  # mm, chord error on faces that are not ground
 SUFFIXES = (".stl", ".ply", ".3mf")
 STANDING = ("design", "ground", "missed", "border")  # the values of GroundMesh.standing
 
 
-def ground_mesh(result, ground=True, deflection_mm=DEFLECTION, context=None):
+def ground_mesh(
+    result: Ground, ground: bool = True, deflection_mm: float = DEFLECTION, context: Context = None
+) -> core.GroundMesh:
     """core.GroundMesh of a ``simulation.result.Result``: the whole part, its sampled faces displaced by the heights (``ground`` False: as designed).
 
     Arrays, mm, work frame: ``vertices`` (n, 3), ``triangles`` (m, 3), ``faces`` (m,) from 0,
@@ -32,7 +40,9 @@ def ground_mesh(result, ground=True, deflection_mm=DEFLECTION, context=None):
     )
 
 
-def file_bytes(mesh, suffix, scale=None):
+def file_bytes(
+    mesh: core.GroundMesh, suffix: str, scale: tuple[float, float, float] | None = None
+) -> bytes:
     """The mesh as a file: suffix ".stl" (binary), ".ply" (binary) or ".3mf". scale: (lower, upper,
     limit) mm of the deviation's colours, for PLY and 3MF. Raises InputError for another suffix, and for .3mf where the core was
     built without lib3mf.
@@ -51,7 +61,9 @@ def file_bytes(mesh, suffix, scale=None):
     return mesh.three_mf(scale)
 
 
-def write(mesh, path, scale=None):
+def write(
+    mesh: core.GroundMesh, path: Path | str, scale: tuple[float, float, float] | None = None
+) -> None:
     """Writes ``file_bytes``, whole or not at all. Raises InputError."""
     path = Path(path)
     data = file_bytes(mesh, path.suffix.lower(), scale)
@@ -61,7 +73,13 @@ def write(mesh, path, scale=None):
         raise cannot_be_written(path, error) from None
 
 
-def export(result, path, ground=True, deflection_mm=DEFLECTION, context=None):
+def export(
+    result: Ground,
+    path: Path | str,
+    ground: bool = True,
+    deflection_mm: float = DEFLECTION,
+    context: Context = None,
+) -> dict[str, Any]:
     """``ground_mesh`` into a file; returns its ``summary``."""
     path = Path(path)
     if path.suffix.lower() not in SUFFIXES:
@@ -76,7 +94,7 @@ def export(result, path, ground=True, deflection_mm=DEFLECTION, context=None):
     return summary(mesh)
 
 
-def summary(mesh):
+def summary(mesh: core.GroundMesh) -> dict[str, Any]:
     """Figures of a mesh, mm, mm2, mm3."""
     report = mesh.report()
     ground, design = report["ground"], report["design"]

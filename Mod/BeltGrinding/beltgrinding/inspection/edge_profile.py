@@ -8,10 +8,15 @@ least squares) where it turns from a quarter to three quarters of the way from o
 both sides of a sharp edge were ground, the profile ends where they cross.
 """
 
+from __future__ import annotations
+
 import math
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
 
+from ..base.kinds import Array, Floats, Json
 from ..engine import InputError, core
 
 LARGEST = 3.0  # mm, radius of an edge's design unless told otherwise
@@ -32,7 +37,7 @@ NEIGHBOURS = 2.0  # radii of the zone within which normals tell an edge's direct
 FLAT = 1e-3  # a smaller share of the normals' spread: no edge
 
 
-def edges(section, largest=LARGEST):
+def edges(section: Json, largest: float = LARGEST) -> list[dict[str, Any]]:
     """The edges that a section meets, in its order: dicts of ``point`` (3,) mm, the design's tip;
     ``turn_deg``; ``design_radius_mm``; ``radius_mm``, 0.0: sharp, None: not known, or no arc; ``residual_mm``, root mean
     square of the fit; ``chord_loss_mm``, None where stock was missed; ``faces`` from 1.
@@ -45,7 +50,7 @@ def edges(section, largest=LARGEST):
     return found
 
 
-def text(edge):
+def text(edge: Json) -> str:
     """An edge of ``edges`` in words."""
     x, y, z = edge["point"]
     told = f"edge at ({x:.1f}, {y:.1f}, {z:.1f}): radius "
@@ -55,7 +60,9 @@ def text(edge):
     return told + ("not known" if loss is None else f"{loss:.3f} mm")
 
 
-def of_zone(field, samples, radius, stations=STATIONS):
+def of_zone(
+    field: core.HeightField, samples: Array, radius: float, stations: int = STATIONS
+) -> dict[str, Any] | None:
     """What the edges of an edge zone are like: of sections across it at up to ``stations`` of its ``samples``,
     dict(sections, design_radius_mm, radius_mm, chord_loss_mm; the last three of min, mean and max, or
     None); None where no section meets an edge below ``radius`` mm.
@@ -91,14 +98,14 @@ def of_zone(field, samples, radius, stations=STATIONS):
     }
 
 
-def _figures(values):
+def _figures(values: Iterable[float | None]) -> dict[str, float] | None:
     known = [value for value in values if value is not None]
     if not known:
         return None
     return {"min": min(known), "mean": float(np.mean(known)), "max": max(known)}
 
 
-def _spread_out(points, count):
+def _spread_out(points: Floats, count: int) -> list[int]:
     """Numbers of up to ``count`` points, each as far as can be from those before it."""
     chosen = [int(np.argmin(points @ np.ones(3)))]
     distance = ((points - points[chosen[0]]) ** 2).sum(axis=1)
@@ -108,14 +115,14 @@ def _spread_out(points, count):
     return chosen
 
 
-def _axes(normal):
+def _axes(normal: Floats) -> tuple[Floats, Floats]:
     """Two unit vectors of a plane, so that first x second is its ``normal``."""
     first = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
     first /= np.linalg.norm(first)
     return first, np.cross(normal, first)
 
 
-def _chains(pieces):
+def _chains(pieces: Iterable[Json]) -> list[dict[str, Any]]:
     """Pieces that meet end to end, joined: dicts of points (n, 3), normals (n, 3), rays (n, 3), height (n,), face (n,)."""
     parts = []
     for piece in pieces:
@@ -150,7 +157,7 @@ def _chains(pieces):
     return chains
 
 
-def _nearest(point, others):
+def _nearest(point: Floats, others: Sequence[Floats]) -> tuple[int, float]:
     """(number of the nearest, its distance) among points that are no closed piece's."""
     if not others:
         return 0, math.inf
@@ -159,7 +166,7 @@ def _nearest(point, others):
     return k, float(distance[k])
 
 
-def _joined(one, other):
+def _joined(one: Json, other: Json) -> dict[str, Any]:
     return {
         **{
             name: np.concatenate([one[name], other[name]])
@@ -170,7 +177,7 @@ def _joined(one, other):
     }
 
 
-def _edges_of(chain, axes, largest):
+def _edges_of(chain: Json, axes: Floats, largest: float) -> list[dict[str, Any]]:
     points, normals = chain["points"] @ axes, chain["normals"] @ axes
     rays = chain["rays"] @ axes
     length = np.linalg.norm(normals, axis=1)
@@ -225,7 +232,7 @@ def _edges_of(chain, axes, largest):
     return found
 
 
-def _at_corners(points, normals, apart):
+def _at_corners(points: Floats, normals: Floats, apart: Array) -> Floats:
     """Whether the profile turns outwards where two pieces meet in one point: by the ways on both sides."""
     signs = np.zeros(int(apart.sum()))
     for k, i in enumerate(np.flatnonzero(apart)):
@@ -236,17 +243,17 @@ def _at_corners(points, normals, apart):
     return signs
 
 
-def _angle(one, other):
+def _angle(one: Floats, other: Floats) -> Floats:
     cross = one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]
     return np.abs(np.arctan2(cross, (one * other).sum(axis=1)))
 
 
-def _runs(marked):
+def _runs(marked: Array) -> list[tuple[int, int]]:
     edge = np.flatnonzero(np.diff(np.concatenate([[0], marked.astype(int), [0]])))
     return list(zip(edge[::2], edge[1::2]))
 
 
-def _without_loops(line):
+def _without_loops(line: Floats) -> Floats:
     """A polyline (n, 2) without the loops in which it crosses itself."""
     i = 0
     while i + 3 < len(line):
@@ -266,7 +273,7 @@ def _without_loops(line):
     return line
 
 
-def _radius(line, first, last):
+def _radius(line: Floats, first: Floats, last: Floats) -> tuple[float | None, float | None]:
     """(radius, root mean square of what the points are off) of a ground profile between two sides of the
     given normals; (0.0, None): sharp, (None, None): it does not turn, (None, ...): it is no arc."""
     ways = np.diff(line, axis=0)
@@ -297,7 +304,7 @@ def _radius(line, first, last):
     return (radius if residual < ROUND * radius else None), residual
 
 
-def _circle(points):
+def _circle(points: Floats) -> tuple[float, float]:
     """(radius, root mean square of the distances) of the circle that fits points (n, 2) best."""
     middle = points.mean(axis=0)
     p = points - middle

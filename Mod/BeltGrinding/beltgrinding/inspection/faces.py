@@ -1,13 +1,19 @@
 """The faces of a part: their numbers and what they are like, as a table and as a picture, for people who
 choose faces without FreeCAD."""
 
+from __future__ import annotations
+
 import colorsys
 import math
+from collections.abc import Iterable, Sequence
+from typing import Any
 from typing import NamedTuple, Optional
 
 import numpy as np
 from PIL import Image, ImageDraw
+from numpy.typing import NDArray
 
+from ..base.kinds import Array, Context, Floats
 from ..engine import InputError, core
 from ..job.spacing import curvatures
 from . import picture
@@ -28,19 +34,23 @@ class Face(NamedTuple):
     number: int  # from 1, as FreeCAD counts
     kind: str  # of surface
     area: float  # mm2; NaN: cannot be found
-    centre: Optional[tuple]  # the point of the face that is nearest to its middle
-    normal: Optional[tuple]  # unit, outwards, there
+    centroid: Optional[tuple[float, ...]]  # of its area; on a curved face not on it
+    centre: Optional[
+        tuple[float, ...]
+    ]  # on the face, nearest to that, or in the middle of its parameters
+    normal: Optional[tuple[float, ...]]  # unit, outwards, there
     convex_radius: Optional[float]  # smallest radius where it bulges out; None: nowhere
     concave_radius: Optional[float]  # smallest radius where it is hollow; None: nowhere
-    neighbours: tuple  # numbers of the faces with a common border
+    neighbours: tuple[int, ...]  # numbers of the faces with a common border
     solid: bool  # it bounds a solid
 
-    def data(self):
+    def data(self) -> dict[str, Any]:
         """As JSON has it."""
         return {
             "face": self.number,
             "type": self.kind,
             "area_mm2": self.area if math.isfinite(self.area) else None,
+            "centroid_mm": self.centroid and list(self.centroid),
             "centre_mm": self.centre and list(self.centre),
             "normal": self.normal and list(self.normal),
             "convex_radius_mm": self.convex_radius,
@@ -50,7 +60,7 @@ class Face(NamedTuple):
         }
 
 
-def faces_of(shape, context=None):
+def faces_of(shape: core.Shape, context: Context = None) -> list[Face]:
     """List of ``Face`` of a core.Shape. A face that cannot be sampled has neither centre nor radii. Raises
     Cancelled."""
     try:
@@ -60,18 +70,15 @@ def faces_of(shape, context=None):
     return [_face(shape, number, beside[number], context) for number in range(shape.face_count)]
 
 
-def _face(shape, number, beside, context):
-    centre = normal = convex = concave = None
+def _face(shape: core.Shape, number: int, beside: Sequence[int], context: Context) -> Face:
+    centroid = centre = normal = convex = concave = None
     try:
         area = shape.face_area(number)
         field, _ = core.sample_faces(shape, [number], math.sqrt(area / OF_A_FACE), context=context)
     except InputError:
         area = math.nan
     else:
-        weights = field.areas.astype(float)
-        middle = (field.points * weights[:, None]).sum(axis=0) / max(weights.sum(), 1e-300)
-        nearest = int(np.argmin(np.linalg.norm(field.points - middle, axis=1)))
-        centre, normal = (tuple(_plain(a[nearest])) for a in (field.points, field.normals))
+        centroid, centre, normal = (tuple(_plain(v)) for v in _middle(shape, number, field))
         bend, areas = curvatures(field)
         flat = FLAT * math.sqrt(area)
         convex, concave = _radius(bend[:, 1], areas, flat), _radius(-bend[:, 0], areas, flat)
@@ -79,6 +86,7 @@ def _face(shape, number, beside, context):
         number + 1,
         shape.surface_type(number),
         area,
+        centroid,
         centre,
         normal,
         convex,
@@ -88,11 +96,30 @@ def _face(shape, number, beside, context):
     )
 
 
-def _plain(vector):
+def _middle(shape: core.Shape, number: int, field: core.HeightField) -> tuple[Array, Array, Array]:
+    """(centroid, centre, outward unit normal there) of a face, and its samples. Where the face has neither at its
+    middle, as a ring, they are those of a sample away from its borders."""
+    weights = field.areas.astype(float)
+    middle = (field.points * weights[:, None]).sum(axis=0) / max(weights.sum(), 1e-300)
+    found = shape.face_centre(number)
+    centroid, centre, normal = (middle, middle, np.zeros(3)) if found is None else found
+    hole = not np.any(normal)
+    near = np.linalg.norm(field.points - (centroid if hole else centre), axis=1)
+    if hole:
+        border = (np.asarray(field.flags) & core.ON_BOUNDARY) != 0
+        near = np.where(border, np.inf, near) if not border.all() else near
+    nearest = int(np.argmin(near))
+    outward = np.asarray(field.normals[nearest], dtype=float)
+    if hole:
+        return centroid, field.points[nearest], outward
+    return centroid, centre, normal if np.dot(normal, outward) > 0 else -np.asarray(normal)
+
+
+def _plain(vector: Iterable[float]) -> list[float]:
     return [round(float(value), 6) + 0.0 for value in vector]
 
 
-def _radius(bend, areas, flat):
+def _radius(bend: Floats, areas: Floats, flat: float) -> float | None:
     """The smallest radius in mm but for a share of the area; None where nothing bends so, or less than
     ``flat`` mm does."""
     if not len(bend):
@@ -104,7 +131,7 @@ def _radius(bend, areas, flat):
     return float(f"{1.0 / found:.4g}") if found * flat > 1.0 else None
 
 
-def text(faces):
+def text(faces: Sequence[Face]) -> str:
     """The table, one line a face."""
     rows = [("face", "type", "area mm2", "centre mm", "normal", "radii mm", "neighbours")]
     for one in faces:
@@ -134,12 +161,12 @@ def text(faces):
     return "\n".join(lines)
 
 
-def _neighbours(numbers):
+def _neighbours(numbers: Sequence[int]) -> str:
     told = " ".join(map(str, numbers[:MOST_NEIGHBOURS]))
     return told + (f" ... ({len(numbers)})" if len(numbers) > MOST_NEIGHBOURS else "")
 
 
-def draw(shape, context=None):
+def draw(shape: core.Shape, context: Context = None) -> tuple[bytes, list[int]]:
     """(bytes of a PNG: the part from two sides, every face in a colour of its own with its number; numbers
     from 1 of the faces that it does not name, since they are hidden or too small). Raises InputError,
     Cancelled."""
@@ -163,7 +190,7 @@ def draw(shape, context=None):
     return picture.png(np.asarray(whole)), missing
 
 
-def _colours(count):
+def _colours(count: int) -> NDArray[np.uint32]:
     """(count,) uint32 0xRRGGBBAA, light ones that differ from one to the next."""
     found = []
     for k in range(count):
@@ -173,13 +200,13 @@ def _colours(count):
     return np.array(found, dtype=np.uint32)
 
 
-def _places(field, view):
+def _places(field: core.HeightField, view: picture.View) -> dict[int, tuple[float, float, int]]:
     """{face from 0: (column, row, size of the label)}: where on the picture most of the face lies around."""
     numbers, slack = np.asarray(field.faces), picture.HIDDEN * field.spacing
     seen = view.shows(field.points, slack) & (field.normals @ view.direction < -0.05)
     places = view.project(field.points)[:, :2]
     border = (np.asarray(field.flags) & core.ON_BOUNDARY) != 0
-    found = {}
+    found: dict[int, tuple[float, float, int]] = {}
     for face in np.unique(numbers[seen]):
         mine = numbers == face
         inner = places[mine & seen & ~border]
@@ -192,13 +219,14 @@ def _places(field, view):
             best = int(np.argmax(room))
             fitting = [size for size in SIZES if room[best] >= ROOM * size]
         else:
-            best, fitting = len(tried) // 2, SIZES
+            best, fitting = len(tried) // 2, list(SIZES)
         if fitting:
-            found[int(face)] = (*tried[best], fitting[0])
+            column, row = tried[best]
+            found[int(face)] = (column, row, fitting[0])
     return found
 
 
-def _label(pen, text, x, y, font):
+def _label(pen: ImageDraw.ImageDraw, text: str, x: float, y: float, font: Any) -> None:
     left, top, right, bottom = pen.textbbox((0, 0), text, font=font)
     x, y = x - 0.5 * (left + right), y - 0.5 * (top + bottom)
     pen.text((x, y), text, font=font, fill="black", stroke_width=3, stroke_fill="white")

@@ -2,12 +2,22 @@
 they are what zones call for. Terms of ISO 21920-1 and ISO 1302: Ra, lay and its symbols.
 """
 
+from __future__ import annotations
 import math
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ..base.kinds import Array, Facts, Floats, Json
 from ..engine import core
+from ..job.settings import Finish, FinishModel, Job
+from ..job.typed import typed
+
+if TYPE_CHECKING:
+    from ..cell.motions import Motions
 
 __all__ = [
     "crossed",
@@ -32,22 +42,26 @@ CODES = {  # of the facts that name them
 }
 
 
-def widened(span):
+def widened(span: Sequence[float]) -> tuple[float, float]:
     """A range of what was measured, by what counts as the same."""
     return span[0] * (1.0 - SLACK), span[1] * (1.0 + SLACK)
 
 
-def rest_per_pass(given):
+def rest_per_pass(given: Finish) -> float | None:
     """Share of the roughness before that a pass leaves, of a job's ``finish``; None: not known."""
-    return given.get("rest_per_pass", given.get("model", {}).get("rest_per_pass"))
+    if given.rest_per_pass is not None or given.model is None:
+        return given.rest_per_pass
+    return given.model.rest_per_pass
 
 
-def roughness(field):
+def roughness(field: core.HeightField) -> Floats | None:
     """(n,) Ra of every sample, um; NaN where it is not known. None where no finish was computed."""
     return None if field.finish is None else np.asarray(field.finish["roughness"], dtype=float)
 
 
-def crossed(field, rest, angle_deg):
+def crossed(
+    field: core.HeightField, rest: float | None, angle_deg: float
+) -> NDArray[np.bool_] | None:
     """(n,) whether scratches of the last two passes cross by ``angle_deg`` or more and both are seen; None where that
     is not known. ``rest``: as ``rest_per_pass`` gives it.
     """
@@ -57,46 +71,52 @@ def crossed(field, rest, angle_deg):
     return (crossing >= math.radians(angle_deg)) & (rest >= SEEN)
 
 
-def crossed_of(job, field):
+def crossed_of(job: Job | Json, field: core.HeightField) -> NDArray[np.bool_] | None:
     """``crossed`` by a job's ``finish``; None without."""
-    given = job.get("finish")
-    return given and crossed(field, rest_per_pass(given), given["crossing_angle_deg"])
+    given = typed(job).finish
+    if given is None:
+        return None
+    return crossed(field, rest_per_pass(given), given.crossing_angle_deg)
 
 
-def figures(job, field, motions=None):
+def figures(
+    job: Job | Json, field: core.HeightField, motions: Motions | None = None
+) -> dict[str, Any] | None:
     """The dict of a verdict's ``finish``; None where none was computed. ``motions``: as ``motions.of_paths`` gives
     them, or None.
     """
-    given = job.get("finish")
+    job = typed(job)
+    given = job.finish
     if given is None or field.finish is None:
         return None
     areas = np.asarray(field.areas, dtype=float)
     ground = np.asarray(field.finish["passes"]) > 0
-    found, across = roughness(field), crossed_of(job, field)
+    found, across = np.asarray(field.finish["roughness"], dtype=float), crossed_of(job, field)
     known = ground & np.isfinite(found)
     outside = np.asarray(field.finish["outside"])
     whole = float(areas[ground].sum())
-    share = lambda chosen: float(areas[ground & chosen].sum()) / whole if whole > 0.0 else 0.0
-    model = given.get("model")
+    part = lambda chosen: float(areas[ground & chosen].sum())
+    share = lambda chosen: min(part(chosen) / whole, 1.0) if whole > 0.0 else 0.0
+    model = given.model
     return {
-        "initial_Ra_um": given.get("initial_Ra_um"),
-        "grit": given.get("grit"),
-        "source": model["source"] if model else None,
+        "initial_Ra_um": given.initial_Ra_um,
+        "grit": given.grit,
+        "source": model.source if model else None,
         "rest_per_pass": rest_per_pass(given),
-        "crossing_angle_deg": given["crossing_angle_deg"],
+        "crossing_angle_deg": given.crossing_angle_deg,
         "ground_area_mm2": whole,
         "known_share": share(known),
         "outside_shares": {
             name.replace(" ", "_"): share(outside == k) for k, name in enumerate(OUTSIDE, 1)
         },
         "Ra_um": _spread(found[known], areas[known]) if known.any() else None,
-        "ln_deviation": model.get("ln_deviation") if model else None,
+        "ln_deviation": model.ln_deviation if model else None,
         "worst": _worst(field, found, known, model, motions) if known.any() else None,
         "crossed_share": None if across is None else share(across),
     }
 
 
-def _spread(values, areas):
+def _spread(values: Floats, areas: Floats) -> dict[str, float]:
     order = np.argsort(values)
     summed = np.cumsum(areas[order])
     high = values[order][min(int(np.searchsorted(summed, 0.95 * summed[-1])), len(order) - 1)]
@@ -109,9 +129,15 @@ def _spread(values, areas):
     }
 
 
-def _worst(field, found, known, model, motions):
+def _worst(
+    field: core.HeightField,
+    found: Floats,
+    known: Array,
+    model: FinishModel | None,
+    motions: Motions | None,
+) -> dict[str, Any]:
     index = int(np.flatnonzero(known)[found[known].argmax()])
-    factor = math.exp(NORMAL_95 * (model or {}).get("ln_deviation", 0.0))
+    factor = math.exp(NORMAL_95 * ((model.ln_deviation if model else None) or 0.0))
     return {
         "Ra_um": float(found[index]),
         "least_um": float(found[index] / factor),
@@ -120,26 +146,29 @@ def _worst(field, found, known, model, motions):
     }
 
 
-def place(field, sample, motions):
+def place(field: core.HeightField, sample: int, motions: Motions | None) -> dict[str, Any]:
     """Where a sample of a field with a finish lies and which motion passed last over it, as a verdict has it; None
     where no pass was, or where that is not known.
     """
     motion = int(field.finish["motion"][sample]) if field.finish["passes"][sample] else None
-    told = motions is not None and motion is not None and motion < len(motions["program"])
+    told = motion is not None and motions is not None and motion < len(motions["program"])
+    of = motions if told else None
     return {
         "sample": int(sample),
         "point_mm": [float(x) for x in field.points[sample]],
         "face": int(field.faces[sample]) + 1,
         "motion": motion,
-        "program": int(motions["program"][motion]) if told else None,
-        "line": int(motions["line"][motion]) or None if told else None,
+        "program": int(of["program"][motion]) if of else None,
+        "line": int(of["line"][motion]) or None if of else None,
     }
 
 
-def notes(job, field):
+def notes(job: Job | Json, field: core.HeightField) -> Facts:
     """Facts of what is not known of the finish."""
+    job = typed(job)
     found = figures(job, field)
-    if found is None or "model" not in job["finish"]:
+    given = job.finish
+    if found is None or given is None or given.model is None:
         return []
     told = [
         core.Fact(
@@ -155,7 +184,7 @@ def notes(job, field):
     unsettled = 1.0 - found["known_share"] - sum(found["outside_shares"].values())
     if not (found["ground_area_mm2"] > 0.0 and unsettled > 1e-6):
         return told
-    if "initial_Ra_um" in job["finish"]:
+    if given.initial_Ra_um is not None:
         told.append(
             core.Fact(
                 "inspection.finish_pass_before",
@@ -177,7 +206,7 @@ def notes(job, field):
     return told
 
 
-def text(finish, programs):
+def text(finish: Json, programs: Sequence[Json]) -> str:
     """A line in words; ``programs``: of the verdict."""
     lines = []
     worst, spread = finish["worst"], finish["Ra_um"]

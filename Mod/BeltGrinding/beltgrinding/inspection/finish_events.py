@@ -2,13 +2,26 @@
 the same.
 """
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TypeAlias, TYPE_CHECKING, Any
+
+from ..base.kinds import Json, known
 from ..cell import motions as ways
 from ..cell.events import kinds, momentary
 from ..engine import core
+from ..job.settings import Finish, Job, ZoneFinish
+from ..job.typed import typed
 from . import finish_zones
 from .finish import SEEN, rest_per_pass
 
+if TYPE_CHECKING:
+    from ..cell.motions import Motions
+
 ROUGH, LAY, UNKNOWN = "roughness_exceeded", "wrong_lay", "finish_unknown"  # kinds
+# Of an event: its kind, value, limit, place (as ``finish.place`` has it) and facts.
+Told: TypeAlias = "tuple[str, float, float, Json | None, list[core.Fact]]"
 DIGITS = 6  # of a time, s: the same from the table of motions that a result keeps
 REASONS = {  # of what is not known: (code, text) of a fact
     "not_computed": ("event.finish_not_computed", "no finish was computed"),
@@ -50,11 +63,17 @@ REASONS = {  # of what is not known: (code, text) of a fact
 }
 
 
-def renewed(events, job, zones, motions):
+def renewed(
+    events: Sequence[dict[str, Any]],
+    job: Job | Json,
+    zones: Sequence[Json],
+    motions: Motions | None,
+) -> list[dict[str, Any]]:
     """A list of events in which those of the finish are made anew, in order of time: of the ``zones`` of a verdict on a
     ``job``, (its ``inspection.zones``, its ``finish``). ``motions``: as ``motions.of_paths`` gives them; without their times
     there are no events of the finish.
     """
+    job = typed(job)
     others = [event for event in events if event["kind"] not in (ROUGH, LAY, UNKNOWN)]
     if motions is None or not len(motions.get("time", ())):
         return others
@@ -62,16 +81,14 @@ def renewed(events, job, zones, motions):
     return sorted([*others, *found], key=lambda event: (event["program"], event["time"]))
 
 
-def _of_zones(job, zones, motions):
-    asked = {
-        zone["name"]: zone["finish"] for zone in job["inspection"]["zones"] if "finish" in zone
-    }
+def _of_zones(job: Job, zones: Sequence[Json], motions: Motions) -> list[dict[str, Any]]:
+    asked = {zone.name: zone.finish for zone in job.inspection.zones if zone.finish is not None}
     known, found = kinds(), []
     for zone in zones:
         judged = zone.get("finish")
         for name, told in (("Ra", _of_roughness), ("lay", _of_lay)):
-            one = (judged or {}).get(name)
-            if one is None or one["verdict"] == "pass":
+            one = judged and judged.get(name)
+            if judged is None or one is None or one["verdict"] == "pass":
                 continue
             event = (
                 _of_unknown(zone["name"], judged["acceptance"], name, one)
@@ -82,15 +99,23 @@ def _of_zones(job, zones, motions):
     return found
 
 
-def _event(known, motions, code, value, limit, place, facts):
+def _event(
+    known: Mapping[str, Json],
+    motions: Motions,
+    code: str,
+    value: float,
+    limit: float,
+    place: Json | None,
+    facts: Sequence[core.Fact],
+) -> dict[str, Any]:
     """An event; ``place``: as ``finish.place`` has it, or None. Where no pass was it belongs to the end of all programs."""
     kind = known[code]
-    motion = place and place["motion"]
-    if motion is None:
+    if place is None or place["motion"] is None:
         last, line = len(motions["time"]) - 1, 0
         program, pose = int(motions["program"][last]), int(motions["pose"][last])
         time = float(motions["time"][last])
     else:
+        motion = place["motion"]
         program, pose = int(motions["program"][motion]), int(motions["pose"][motion])
         line, time = int(motions["line"][motion]), ways.time_at(motions, motion, place["point_mm"])
     event = momentary(
@@ -102,13 +127,13 @@ def _event(known, motions, code, value, limit, place, facts):
         line=line,
         value=float(value),
         limit=float(limit),
-        point=place and place["point_mm"],
-        face=place and place["face"],
+        point=None if place is None else place["point_mm"],
+        face=None if place is None else place["face"],
     )
     return {"program": program, **event}
 
 
-def _of_roughness(job, zone, acceptance, judged, asked):
+def _of_roughness(job: Job, zone: str, acceptance: str, judged: Json, asked: ZoneFinish) -> Told:
     worst = judged["worst"]
     facts = [
         core.Fact(
@@ -133,7 +158,7 @@ def _of_roughness(job, zone, acceptance, judged, asked):
     return ROUGH, worst["Ra_um"], judged["limit_um"], worst, facts
 
 
-def _of_lay(job, zone, acceptance, judged, asked):
+def _of_lay(job: Job, zone: str, acceptance: str, judged: Json, asked: ZoneFinish) -> Told:
     facts = [
         core.Fact(
             "event.wrong_lay",
@@ -143,22 +168,22 @@ def _of_lay(job, zone, acceptance, judged, asked):
             symbol=judged["symbol"],
             acceptance=acceptance,
         ),
-        _why_wrong(job["finish"], judged, asked),
+        _why_wrong(known(job.finish), judged, asked),
     ]
     limit = 100.0 * finish_zones.allowed_share(acceptance)
     return LAY, 100.0 * judged["off_share"], limit, judged["worst"], facts
 
 
-def _why_wrong(given, judged, asked):
+def _why_wrong(given: Finish, judged: Json, asked: ZoneFinish) -> core.Fact:
     """What is wrong at the worst place."""
     angle, crossing = judged["worst"]["angle_deg"], judged["worst"]["crossing_deg"]
     if judged["symbol"] not in finish_zones.CROSSED:
-        if angle > asked["lay_tolerance_deg"]:
+        if angle > asked.lay_tolerance_deg:
             return core.Fact(
                 "event.lay_turned",
                 "at worst they lie {angle:.1f}° off, {limit:.3g}° are allowed",
                 angle=angle,
-                limit=asked["lay_tolerance_deg"],
+                limit=asked.lay_tolerance_deg,
             )
         return core.Fact(
             "event.lay_crossed",
@@ -168,6 +193,7 @@ def _why_wrong(given, judged, asked):
     if crossing is None:
         return core.Fact("event.lay_one_way", "at worst all run one way, that of a single pass")
     rest = rest_per_pass(given)
+    assert rest is not None  # else it is not known whether they are crossed
     if rest < SEEN:
         return core.Fact(
             "event.lay_worn_off",
@@ -179,11 +205,11 @@ def _why_wrong(given, judged, asked):
         "event.lay_not_crossed",
         "at worst they cross by {angle:.1f}°, {limit:.3g}° are asked for",
         angle=crossing,
-        limit=given["crossing_angle_deg"],
+        limit=given.crossing_angle_deg,
     )
 
 
-def _of_unknown(zone, acceptance, name, judged):
+def _of_unknown(zone: str, acceptance: str, name: str, judged: Json) -> Told:
     """Of what is not known. So much as is beyond already is not left to be unknown."""
     beyond = judged["above_share" if name == "Ra" else "off_share"]
     left = finish_zones.allowed_share(acceptance) - beyond

@@ -4,13 +4,17 @@
 the part is on the picture, so that marks and captions can be laid over it.
 """
 
+from __future__ import annotations
 import io
+from typing import Any
 from typing import NamedTuple
 
 import numpy as np
 from PIL import Image, ImageFont
 from PIL.PngImagePlugin import PngInfo
+from numpy.typing import ArrayLike, NDArray
 
+from ..base.kinds import Array, Context, Floats
 from ..engine import core
 from . import sight
 
@@ -34,19 +38,19 @@ HIDDEN = 2.0  # samples that a point may lie behind what the picture shows there
 class View(NamedTuple):
     """A picture and its camera. Frame: work, mm."""
 
-    pixels: np.ndarray  # (rows, columns, 3) uint8, sRGB
-    depth: np.ndarray  # (rows, columns) mm beyond ``target``, NaN where there is nothing
-    target: np.ndarray
-    direction: np.ndarray  # unit, into the picture
-    up: np.ndarray  # unit, at a right angle to it
+    pixels: Array  # (rows, columns, 3) uint8, sRGB
+    depth: Array  # (rows, columns) mm beyond ``target``, NaN where there is nothing
+    target: Array
+    direction: Array  # unit, into the picture
+    up: Array  # unit, at a right angle to it
     height: float  # mm from the lower to the upper border
 
     @property
-    def scale(self):
+    def scale(self) -> float:
         """Pixels a mm."""
         return self.pixels.shape[0] / self.height
 
-    def project(self, points):
+    def project(self, points: Array) -> Floats:
         """(n, 3) of points (n, 3): column and row in pixels, mm beyond the target."""
         away = np.asarray(points, dtype=float).reshape(-1, 3) - self.target
         right = np.cross(self.direction, self.up)
@@ -59,7 +63,7 @@ class View(NamedTuple):
             ]
         )
 
-    def shows(self, points, slack):
+    def shows(self, points: Array, slack: float) -> NDArray[np.bool_]:
         """(n,) bool: in the picture, and not hidden by more than ``slack`` mm."""
         x, y, depth = self.project(points).T
         rows, columns = self.depth.shape
@@ -77,7 +81,13 @@ class Studio:
     but the field's faces is shown in grey; None: the field alone.
     """
 
-    def __init__(self, field, colours, shape=None, context=None):
+    def __init__(
+        self,
+        field: core.HeightField,
+        colours: Array,
+        shape: core.Shape | None = None,
+        context: Context = None,
+    ) -> None:
         self.field = field
         self.points = field.points + field.height[:, None] * field.rays
         surfaces = [
@@ -89,7 +99,7 @@ class Studio:
             }
         ]
         rest = [] if shape is None else rest_of(shape, field)
-        if rest:
+        if shape is not None and rest:
             low, high = shape.extents()
             chord = CHORD * float(np.linalg.norm(np.subtract(high, low)))
             mesh = core.triangulate(shape, max(chord, 1e-6), context, rest)
@@ -107,8 +117,16 @@ class Studio:
         self.lengths = np.array([np.ptp(column) for column in columns])
 
     def view(
-        self, target, direction, up, height, columns=WIDTH, rows=HEIGHT, near=np.inf, context=None
-    ):
+        self,
+        target: ArrayLike,
+        direction: ArrayLike,
+        up: ArrayLike,
+        height: float,
+        columns: int = WIDTH,
+        rows: int = HEIGHT,
+        near: float = np.inf,
+        context: Context = None,
+    ) -> View:
         """A ``View``; ``up`` is made square to ``direction``. What stands more than ``near`` mm
         before the target is cut away.
         """
@@ -118,22 +136,29 @@ class Studio:
         )
         return View(pixels, depth, np.asarray(target, dtype=float), direction, up, float(height))
 
-    def whole(self, direction, up, columns=None, rows=None, context=None):
+    def whole(
+        self,
+        direction: ArrayLike,
+        up: ArrayLike,
+        columns: int | None = None,
+        rows: int | None = None,
+        context: Context = None,
+    ) -> View:
         """A ``View`` that just holds the part; without a size, of the part's own proportions."""
-        direction, up = square(direction, up)
-        axes = np.stack([np.cross(direction, up), up, direction])
+        away, upright = square(direction, up)
+        axes = np.stack([np.cross(away, upright), upright, away])
         seen = self.corners @ axes.T
         low, high = seen.min(axis=0), seen.max(axis=0)
         wide, tall = (high - low)[:2]
-        if columns is None:
+        if columns is None or rows is None:
             shape = float(np.clip(wide / max(tall, 1e-9), NARROWEST, WIDEST))
             columns, rows = (int(round((PIXELS * f) ** 0.5)) for f in (shape, 1.0 / shape))
         height = MARGIN * max(tall, wide * rows / columns, 1e-6)
         return self.view(
-            0.5 * (low + high) @ axes, direction, up, height, columns, rows, context=context
+            0.5 * (low + high) @ axes, away, upright, height, columns, rows, context=context
         )
 
-    def both(self, context=None):
+    def both(self, context: Context = None) -> tuple[View, View]:
         """The ``View`` that shows most of the ground faces and, as large, the one that shows most of what
         the first does not; both upright, and not along an axis, so that the part looks like a body.
         """
@@ -144,26 +169,29 @@ class Studio:
         back = self.whole(-sides.back(), UPRIGHT, columns, rows, context)
         return front, back
 
-    def close_up(self, point, normal, extent=0.0, context=None):
+    def close_up(
+        self, point: ArrayLike, normal: ArrayLike, extent: float = 0.0, context: Context = None
+    ) -> View:
         """A ``View`` straight on ``point`` along its ``normal`` or, where something stands in the way, from
         where it is seen; ``extent`` mm and some around. What hides the point from everywhere is cut away.
         """
-        normal = np.asarray(normal, dtype=float)
+        spot: Floats = np.asarray(point, dtype=float)
+        out: Floats = np.asarray(normal, dtype=float)
         low, high = self.renderer.extents
         most = MARGIN * float(np.linalg.norm(np.subtract(high, low)))
         largest = CLOSEST_SHARE * float(np.linalg.norm(self.lengths))
         height = min(max(min(2.0 * extent, largest), CLOSE_UP * self.field.spacing), most)
         slack = HIDDEN * self.field.spacing
-        away, _ = sight.towards(self.renderer, *self._around(point, normal, extent), normal, slack)
+        away, _ = sight.towards(self.renderer, *self._around(spot, out, extent), out, slack)
         up, near = _up_for(away, self.lengths), 2.0 * most
         while True:
             size = CLOSE_WIDTH, CLOSE_HEIGHT
-            view = self.view(point, -away, up, height, *size, near, context)
-            if near < slack or view.shows(point, slack)[0]:
+            view = self.view(spot, -away, up, height, *size, near, context)
+            if near < slack or view.shows(spot, slack)[0]:
                 return view
             near = 0.5 * min(near, float(-view.depth[CLOSE_HEIGHT // 2, CLOSE_WIDTH // 2]))
 
-    def _around(self, point, normal, extent):
+    def _around(self, point: Floats, normal: Floats, extent: float) -> tuple[Array, Array]:
         """(points, normals) of a place: the point itself, and the samples around on its side."""
         reach = max(0.5 * extent, 2.0 * self.field.spacing)
         near = np.flatnonzero(np.abs(self.field.points[:, 0] - point[0]) < reach)
@@ -174,12 +202,12 @@ class Studio:
         return points, np.vstack([normal, self.field.normals[near]])
 
 
-def rest_of(shape, field):
+def rest_of(shape: core.Shape, field: core.HeightField) -> list[int]:
     """The faces of the shape that the field does not cover, from 0."""
     return np.setdiff1d(np.arange(shape.face_count), field.faces).tolist()
 
 
-def smooth_normals(mesh):
+def smooth_normals(mesh: core.TriangleMesh) -> NDArray[np.float32]:
     """(n, 3) float32: mean normals at a mesh's vertices, which two faces never share."""
     corners = mesh.vertices[mesh.triangles].astype(float)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -190,7 +218,7 @@ def smooth_normals(mesh):
     return (found / np.maximum(length, 1e-300)).astype(np.float32)
 
 
-def _ways():
+def _ways() -> Floats:
     """(n, 3) directions all around: the points that are farthest along them have the extents of all in any
     direction, or nearly so.
     """
@@ -204,14 +232,16 @@ def _ways():
     )
 
 
-def square(direction, up):
+def square(direction: ArrayLike, up: ArrayLike) -> tuple[Floats, Floats]:
     """(direction, up) as unit vectors at a right angle."""
-    direction = np.asarray(direction, dtype=float) / np.linalg.norm(direction)
-    up = np.asarray(up, dtype=float) - np.dot(up, direction) * direction
-    return direction, up / np.linalg.norm(up)
+    away: Floats = np.asarray(direction, dtype=float)
+    away = away / np.linalg.norm(away)
+    upright: Floats = np.asarray(up, dtype=float)
+    upright = upright - np.dot(upright, away) * away
+    return away, upright / np.linalg.norm(upright)
 
 
-def _up_for(out, lengths):
+def _up_for(out: Floats, lengths: Floats) -> Floats:
     """The axis of the part that is upright where one looks against ``out``: z if it can be, else the
     one along which the field is longest. ``lengths``: the field's along the axes.
     """
@@ -220,7 +250,7 @@ def _up_for(out, lengths):
     return np.eye(3)[0 if lengths[0] < lengths[1] and abs(out[0]) < 0.7 else 1]
 
 
-def font(size):
+def font(size: int) -> Any:
     """Pillow's font for what is written on pictures, of ``size`` pixels."""
     try:
         return ImageFont.truetype(FONT, size)
@@ -228,7 +258,7 @@ def font(size):
         return ImageFont.load_default()
 
 
-def png(pixels):
+def png(pixels: Array) -> bytes:
     """Bytes of a PNG file of (rows, columns, 3) uint8, which says by what it was made."""
     file, about = io.BytesIO(), PngInfo()
     about.add_text("Software", "BeltGrinding")

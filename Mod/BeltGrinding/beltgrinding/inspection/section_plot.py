@@ -4,11 +4,16 @@ Two modes: ``unrolled`` plots heights over the arc length, the design being the 
 shows the true outline in the plane, the heights enlarged by a factor (``exaggeration``).
 """
 
+from __future__ import annotations
+
 import math
+from typing import Any
 from xml.sax.saxutils import escape
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from ..base.kinds import Array, Floats, Json
 from ..engine import InputError
 from . import edge_profile
 
@@ -28,7 +33,7 @@ EDGE_LINE, MOST_EDGES = 18, 6  # pixels of a line of text on an edge, and how ma
 LEFT, RIGHT, TOP, BOTTOM = 74, 18, 58, 50  # its margins
 
 
-def axes_of(section):
+def axes_of(section: Json) -> Floats:
     """(3, 2): unit vectors of a section's plane: along it, and out of the part."""
     normal = np.asarray(section["normal"])
     mean = np.zeros(3)
@@ -38,13 +43,13 @@ def axes_of(section):
     mean -= mean.dot(normal) * normal
     if np.linalg.norm(mean) < 1e-3 * sum(p["s"][-1] - p["s"][0] for p in section["pieces"]):
         # All round: the coordinate axis that lies best in the plane is up, z before y before x.
-        k = max((2, 1, 0), key=lambda k: round(1.0 - abs(normal[k]), 6))
+        k = max((2, 1, 0), key=lambda k: round(1.0 - abs(float(normal[k])), 6))
         mean = np.eye(3)[k] - normal[k] * normal
     out = mean / np.linalg.norm(mean)
     return np.column_stack([np.cross(normal, out), out])
 
 
-def auto_exaggeration(section):
+def auto_exaggeration(section: Json) -> float:
     """A factor of 1, 2, 5, 10... that lets heights of ``SHARE`` of the outline's extent be seen."""
     axes = axes_of(section)
     points = np.vstack([piece["point"] for piece in section["pieces"]]) @ axes
@@ -58,7 +63,7 @@ def auto_exaggeration(section):
     return max(step * power for step in (1, 2, 5) if step * power <= max(wanted, 1.0))
 
 
-def plot(section, mode=UNROLLED, exaggeration=None):
+def plot(section: Json, mode: str = UNROLLED, exaggeration: float | None = None) -> dict[str, Any]:
     """The plot of a section as plain data, mm.
 
     Returns a dict: ``mode``, ``exaggeration``, ``equal`` (whether both axes have one scale),
@@ -75,20 +80,20 @@ def plot(section, mode=UNROLLED, exaggeration=None):
             first=UNROLLED,
             second=SHAPE,
         )
-    if exaggeration is None:
-        exaggeration = auto_exaggeration(section) if mode == SHAPE else 1.0
-    if not (math.isfinite(exaggeration) and exaggeration > 0):
+    usual = auto_exaggeration(section) if mode == SHAPE and exaggeration is None else 1.0
+    factor = usual if exaggeration is None else exaggeration
+    if not (math.isfinite(factor) and factor > 0):
         raise InputError("inspection.exaggeration", "section: the exaggeration is a factor above 0")
     axes = axes_of(section)
 
-    def place(piece, height):
+    def place(piece: Json, height: Floats | float) -> Floats:
         height = np.broadcast_to(height, len(piece["s"]))
         if mode == UNROLLED:
             return np.column_stack([piece["s"], height])
-        return (piece["point"] + exaggeration * height[:, None] * piece["ray"]) @ axes
+        return (piece["point"] + factor * height[:, None] * piece["ray"]) @ axes
 
     lower, upper = section["tolerance"]
-    lines = {key: [] for key in LOOKS}
+    lines: dict[str, list[Floats]] = {key: [] for key in LOOKS}
     ground = []
     for piece in section["pieces"]:
         lines["tolerance"].append(_between(place(piece, lower), place(piece, upper)))
@@ -105,15 +110,21 @@ def plot(section, mode=UNROLLED, exaggeration=None):
     layers = []
     for key, (label, colour, width, dash) in LOOKS.items():
         if lines[key]:
-            layer = {"key": key, "label": label, "colour": colour, "width": width, "dash": dash}
+            layer: dict[str, Any] = {
+                "key": key,
+                "label": label,
+                "colour": colour,
+                "width": width,
+                "dash": dash,
+            }
             layers.append({**layer, "lines" if width else "polygons": lines[key]})
     every = np.vstack([line for group in lines.values() for line in group])
     (x0, y0), (x1, y1) = every.min(axis=0), every.max(axis=0)
     margin = 0.06 * max(y1 - y0, 1e-3)
-    by = "" if exaggeration == 1.0 else f" (heights ×{exaggeration:g})"
+    by = "" if factor == 1.0 else f" (heights ×{factor:g})"
     return {
         "mode": mode,
-        "exaggeration": exaggeration,
+        "exaggeration": factor,
         "equal": mode == SHAPE,
         "x_label": "arc length, mm" if mode == UNROLLED else f"in the plane, mm{by}",
         "y_label": "height above the design, mm" if mode == UNROLLED else "mm",
@@ -123,22 +134,22 @@ def plot(section, mode=UNROLLED, exaggeration=None):
     }
 
 
-def _between(low, high):
+def _between(low: Floats, high: Floats) -> Floats:
     return np.vstack([low, high[::-1]])
 
 
-def _spans(known):
+def _spans(known: Array) -> list[tuple[int, int]]:
     """Begin and end of each run of True that has two values or more."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]]).astype(int)))
     return [(a, b) for a, b in zip(edges[::2], edges[1::2]) if b - a > 1]
 
 
-def _runs(line):
+def _runs(line: Floats) -> list[Floats]:
     """The parts of a line without NaN."""
     return [line[a:b] for a, b in _spans(~np.isnan(line).any(axis=1))]
 
 
-def ticks(low, high, count=8):
+def ticks(low: float, high: float, count: int = 8) -> tuple[list[float], int]:
     """Round values from ``low`` to ``high``, about ``count``, and the decimals that they need."""
     span = max(high - low, 1e-12)
     power = 10.0 ** math.floor(math.log10(span / count))
@@ -148,16 +159,16 @@ def ticks(low, high, count=8):
     return [k * step for k in range(first, last + 1)], decimals
 
 
-def title(section):
+def title(section: Json) -> str:
     """The section's plane in words."""
 
-    def three(vector):
-        return ", ".join(f"{value + 0.0:.4g}" for value in np.round(vector, 6))
+    def three(vector: ArrayLike) -> str:
+        return ", ".join(f"{value + 0.0:.4g}" for value in np.round(np.asarray(vector), 6))
 
     return f"Section at ({three(section['point'])}) mm, normal ({three(section['normal'])})"
 
 
-def svg(section, mode=UNROLLED, exaggeration=None):
+def svg(section: Json, mode: str = UNROLLED, exaggeration: float | None = None) -> str:
     """The plot as the text of an SVG file, with axes in millimetres and a legend."""
     drawn = plot(section, mode, exaggeration)
     x0, y0, x1, y1 = drawn["bounds"]
@@ -170,7 +181,7 @@ def svg(section, mode=UNROLLED, exaggeration=None):
         y0 -= 0.5 * (height / scale_y - (y1 - y0))
         x1, y1 = x0 + width / scale_x, y0 + height / scale_y
 
-    def at(points):
+    def at(points: Floats) -> str:
         x = LEFT + (points[:, 0] - x0) * scale_x
         y = TOP + height - (points[:, 1] - y0) * scale_y
         return " ".join(f"{a:.2f},{b:.2f}" for a, b in zip(x, y))
@@ -227,19 +238,19 @@ def svg(section, mode=UNROLLED, exaggeration=None):
     return "\n".join([*out, "</svg>", ""])
 
 
-def _labels(low, high, count):
+def _labels(low: float, high: float, count: int) -> list[tuple[float, str]]:
     values, decimals = ticks(low, high, count)
     return [(value, f"{value + 0.0:.{decimals}f}") for value in values]
 
 
-def _line(x0, y0, x1, y1):
+def _line(x0: float, y0: float, x1: float, y1: float) -> str:
     return f'<path d="M{x0:.2f} {y0:.2f}L{x1:.2f} {y1:.2f}" stroke="#e3e5e8"/>'
 
 
-def _text(x, y, text, anchor):
+def _text(x: float, y: float, text: str, anchor: str) -> str:
     return f'<text x="{x:.2f}" y="{y:.2f}" text-anchor="{anchor}">{escape(text)}</text>'
 
 
-def _pen(layer):
+def _pen(layer: Json) -> str:
     dash = f' stroke-dasharray="{" ".join(map(str, layer["dash"]))}"' if layer["dash"] else ""
     return f'stroke="{layer["colour"]}" stroke-width="{layer["width"]}"{dash}'

@@ -1,6 +1,16 @@
 """From where a place of the part is seen: directions of a camera with a line of sight."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
+from numpy.typing import ArrayLike
+
+from ..base.kinds import Array, Floats
+
+if TYPE_CHECKING:
+    from ..engine import core
 
 DIRECTIONS = 200  # that are tried
 MOST_POINTS = 1500  # of those that are to be seen; so many are tried
@@ -11,7 +21,7 @@ FROM_BELOW = 0.15  # and what looking from below costs, added
 APART = 0.5  # cosine between two directions that show two sides
 
 
-def around():
+def around() -> Floats:
     """(n, 3) unit vectors all around, evenly spread (Fibonacci's sphere)."""
     k = np.arange(DIRECTIONS) + 0.5
     z = 1.0 - 2.0 * k / DIRECTIONS
@@ -20,12 +30,12 @@ def around():
     return np.column_stack([r * np.cos(angle), r * np.sin(angle), z])
 
 
-def thinned(count, most=MOST_POINTS):
+def thinned(count: int, most: int = MOST_POINTS) -> Array:
     """Indices of at most ``most`` of ``count``, evenly spread."""
     return np.linspace(0, count - 1, min(count, most)).astype(int)
 
 
-def _cost(directions):
+def _cost(directions: Floats) -> Floats:
     """(n,) of the area seen: how far a camera in the directions is from where one would stand."""
     z = directions[:, 2]
     return TO_LEVEL * np.abs(z - LEVEL) + FROM_BELOW * (z < -0.1)
@@ -39,7 +49,9 @@ class Sides:
     z.
     """
 
-    def __init__(self, renderer, points, normals, areas, slack):
+    def __init__(
+        self, renderer: core.Renderer, points: Array, normals: Array, areas: Array, slack: float
+    ) -> None:
         chosen = thinned(len(points))
         ways = around()
         self.ways = ways[np.abs(ways).max(axis=1) < ALONG_AXIS]
@@ -49,14 +61,14 @@ class Sides:
         weights /= max(weights.sum(), 1e-300)
         self.shown = weights[:, None] * seen * facing  # area in the picture, by point and direction
 
-    def front(self):
+    def front(self) -> Floats:
         """Unit vector to the camera that sees most of the area."""
         return self.ways[self._front()]
 
-    def _front(self):
+    def _front(self) -> int:
         return int(np.argmax(self.shown.sum(axis=0) - _cost(self.ways)))
 
-    def back(self):
+    def back(self) -> Floats:
         """Unit vector to the camera that sees most of what the first one does not."""
         front = self._front()
         new = np.clip(self.shown - 2.0 * self.shown[:, [front]], 0.0, None)
@@ -65,7 +77,14 @@ class Sides:
         return self.ways[int(np.argmax(worth))]
 
 
-def towards(renderer, points, normals, preferred, slack, liking=0.5):
+def towards(
+    renderer: core.Renderer,
+    points: Array,
+    normals: Array,
+    preferred: ArrayLike,
+    slack: float,
+    liking: float = 0.5,
+) -> tuple[Floats, float]:
     """(direction, share): a unit vector to a camera that sees ``points`` (n, 3) with ``normals``, and the
     share of them that it sees. ``preferred``: where it should stand, as far as it can, and ``liking`` how
     much of the area that is worth. The first point counts as much as all others.

@@ -4,20 +4,30 @@ Its form is Resources/schema/verdict.schema.json; docs/verification.md tells wha
 Faces are numbered from 1 as FreeCAD does; programs, poses and motions from 0 as in events.json.
 """
 
+from __future__ import annotations
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..base.kinds import Array, Context, Facts, Floats, Json, known
 from ..base.messages import fact_data
 from ..cell import motions as ways
 from ..engine import InputError, core
 from ..job import resolution
 from ..job.poses import program_name
+from ..job.settings import Job, Zone
+from ..job.typed import typed
 from . import edge_profile
 from . import finish as finishes
 from . import finish_zones
 from . import heat as heats
 from .verdict_text import text
+
+if TYPE_CHECKING:
+    from ..cell.motions import Motions
+    from .ground import Judged
 
 __all__ = ["cluster_samples", "judge", "of_result", "text", "verdict"]
 
@@ -28,24 +38,33 @@ DEFLECTION = 0.01  # mm, of the faces that are not ground, for the thickness
 EXTRAPOLATED = ("law_out_of_range", "belt_out_of_range")
 
 
-def verdict(job, field, events=(), motions=None, unresolved=None, shape=None, context=None):
+def verdict(
+    job: Job | Json,
+    field: core.HeightField,
+    events: Sequence[Json] = (),
+    motions: Motions | None = None,
+    unresolved: int | None = None,
+    shape: core.Shape | None = None,
+    context: Context = None,
+) -> dict[str, Any]:
     """The verdict, a dict, on a ground core.HeightField by the zones of a validated job.
 
     ``events``: as in events.json. ``motions``: as ``motions.of_paths`` gives them; read from the job's
     programs if None. ``unresolved``: how many places of the programs could not be resolved; None:
     counted in them. ``shape``: the design, if it has been read. Raises InputError and Cancelled.
     """
-    notes = []
+    job = typed(job)
+    notes: Facts = []
     if motions is None or unresolved is None:
         told, counted = _read_motions(job, notes)
         motions = told if motions is None else motions
         unresolved = counted if unresolved is None else unresolved
-    zones = job["inspection"].get("zones", [])
-    rest = job["inspection"]["tolerance_mm"]
+    zones = job.inspection.zones
+    rest = job.inspection.tolerance_mm
     with ThreadPoolExecutor(1) as beside:  # each uses one processor, and holds up no other Python
-        waves = beside.submit(waviness, field, motions, context)
+        waiting = beside.submit(waviness, field, motions, context)
         found = judge(job, field)
-        waves = {face["face"]: face for face in waves.result()}
+        waves = {face["face"]: face for face in waiting.result()}
     traced = field.trace is not None
 
     faces = []
@@ -69,18 +88,18 @@ def verdict(job, field, events=(), motions=None, unresolved=None, shape=None, co
         if thick is not None:
             one["verdict"] = _worse(one["verdict"], thick["verdict"])
         if not region["samples"]:
-            notes.append(_empty(zone, field.spacing))
+            notes.append(_empty(known(zone), field.spacing))
         samples = np.flatnonzero(found["zone"] == region["region"])
         if texture is not None:
             one["verdict"] = _worse(one["verdict"], texture["verdict"])
         edge = None
-        if zone is not None and "edge_radius_mm" in zone:
-            edge = edge_profile.of_zone(field, samples, zone["edge_radius_mm"])
+        if zone is not None and zone.edge_radius_mm is not None:
+            edge = edge_profile.of_zone(field, samples, zone.edge_radius_mm)
         judged.append(
             {
-                "name": None if zone is None else zone["name"],
-                "tolerance_mm": list(rest if zone is None else zone.get("tolerance_mm", rest)),
-                "edge_radius_mm": None if zone is None else zone.get("edge_radius_mm"),
+                "name": None if zone is None else zone.name,
+                "tolerance_mm": list(rest if zone is None else zone.tolerance_mm or rest),
+                "edge_radius_mm": None if zone is None else zone.edge_radius_mm,
                 "faces": [int(face) + 1 for face in np.unique(field.faces[samples])],
                 **one,
                 "edge": edge,
@@ -124,7 +143,12 @@ def verdict(job, field, events=(), motions=None, unresolved=None, shape=None, co
     }
 
 
-def of_result(result, shape=None, inspection=None, context=None):
+def of_result(
+    result: Judged,
+    shape: core.Shape | None = None,
+    inspection: Json | None = None,
+    context: Context = None,
+) -> dict[str, Any]:
     """The verdict on a ``Result``; by another job's ``inspection`` if given. ``shape``: the design, if
     it has been read. Raises InputError and Cancelled.
     """
@@ -140,45 +164,63 @@ def of_result(result, shape=None, inspection=None, context=None):
     )
 
 
-def cluster_samples(job, field, number):
+def cluster_samples(job: Job | Json, field: core.HeightField, number: int) -> Array:
     """(k,) the samples of a verdict's cluster ``number``, from 1."""
+    job = typed(job)
     return np.flatnonzero(judge(job, field, 0, 0)["cluster"] == number - 1)
 
 
-def judge(job, field, clusters=MOST_CLUSTERS, motions=MOST_MOTIONS):
+def judge(
+    job: Job | Json,
+    field: core.HeightField,
+    clusters: int = MOST_CLUSTERS,
+    motions: int = MOST_MOTIONS,
+) -> dict[str, Any]:
     """What core.judge says by the zones of a job."""
-    rest = job["inspection"]["tolerance_mm"]
-    zones = _core_zones(job["inspection"].get("zones", []), rest)
+    job = typed(job)
+    rest = job.inspection.tolerance_mm
+    zones = _core_zones(job.inspection.zones, rest)
     return core.judge(field, rest, zones, clusters, motions)
 
 
-def lower_limits(job, field):
+def lower_limits(job: Job | Json, field: core.HeightField) -> Array:
     """(n,) the lower limit of every sample, mm; (1,) where it is the same for all."""
-    rest, zones = job["inspection"]["tolerance_mm"], job["inspection"].get("zones", [])
-    limits = np.array([zone.get("tolerance_mm", rest)[0] for zone in (*zones, {})], np.float32)
+    job = typed(job)
+    rest, zones = job.inspection.tolerance_mm, job.inspection.zones
+    bands = [*(zone.tolerance_mm or rest for zone in zones), rest]
+    limits = np.array([band[0] for band in bands], np.float32)
     return limits[core.zone_of_samples(field, _core_zones(zones, rest))] if zones else limits
 
 
-def zone_of_samples(job, field):
+def zone_of_samples(job: Job | Json, field: core.HeightField) -> Array:
     """(n,) number of the zone of a job that holds each sample; that of all zones: none of them."""
-    rest, zones = job["inspection"]["tolerance_mm"], job["inspection"].get("zones", [])
+    job = typed(job)
+    rest, zones = job.inspection.tolerance_mm, job.inspection.zones
     return core.zone_of_samples(field, _core_zones(zones, rest))
 
 
-def limits(job, field):
+def limits(job: Job | Json, field: core.HeightField) -> tuple[Array, Array]:
     """(lower (n,), upper (n,)) of every sample by its zone, mm."""
-    rest, zones = job["inspection"]["tolerance_mm"], job["inspection"].get("zones", [])
-    bands = np.array([zone.get("tolerance_mm", rest) for zone in (*zones, {})], dtype=float)
-    return tuple(bands[zone_of_samples(job, field)].T)
+    job = typed(job)
+    rest, zones = job.inspection.tolerance_mm, job.inspection.zones
+    bands = np.array([*(zone.tolerance_mm or rest for zone in zones), rest], dtype=float)
+    lower, upper = bands[zone_of_samples(job, field)].T
+    return lower, upper
 
 
-def thickness_deviation(job, field, shape=None, context=None):
+def thickness_deviation(
+    job: Job | Json,
+    field: core.HeightField,
+    shape: core.Shape | None = None,
+    context: Context = None,
+) -> Floats | None:
     """(n,) how far the ground part's thickness is from the design's, mm; NaN where it cannot be measured
     and outside of the zones that limit it. None where no zone does. ``shape``: the design, if it has been
     read. Raises Cancelled.
     """
-    zones = job["inspection"].get("zones", [])
-    limited = [i for i, zone in enumerate(zones) if "thickness_mm" in zone]
+    job = typed(job)
+    zones = job.inspection.zones
+    limited = [i for i, zone in enumerate(zones) if zone.thickness_mm is not None]
     if not limited:
         return None
     samples = np.flatnonzero(np.isin(zone_of_samples(job, field), limited))
@@ -188,37 +230,37 @@ def thickness_deviation(job, field, shape=None, context=None):
     return found
 
 
-def _core_zones(zones, rest):
+def _core_zones(zones: Sequence[Zone], rest: Sequence[float]) -> list[dict[str, Any]]:
     found = []
     for zone in zones:
-        faces = [face - 1 for face in zone.get("faces", [])]
-        one = {"tolerance": zone.get("tolerance_mm", rest), "faces": faces}
-        if "edge_radius_mm" in zone:
-            one["edge_radius"] = float(zone["edge_radius_mm"])
+        faces = [face - 1 for face in zone.faces]
+        one: dict[str, Any] = {"tolerance": zone.tolerance_mm or rest, "faces": faces}
+        if zone.edge_radius_mm is not None:
+            one["edge_radius"] = float(zone.edge_radius_mm)
         found.append(one)
     return found
 
 
-def _read_motions(job, notes):
+def _read_motions(job: Job, notes: Facts) -> tuple[Motions, int] | tuple[None, None]:
     """(motions, unresolved) from the job's programs; None, None where they cannot be read."""
     from ..cell import tool_path as tool_paths  # which imports this module
 
-    problems = []
+    problems: Facts = []
     try:
-        paths = [tool_paths.tool_path(job, i, problems) for i in range(len(job["programs"]))]
+        paths = [tool_paths.tool_path(job, i, problems) for i in range(len(job.programs))]
     except InputError as error:
         notes.append(
             core.Fact("inspection.no_motions", "the motions are not known: {reason}", reason=error)
         )
         return None, None
-    counted = len(problems) + sum(program.get("unresolved", 0) for program in job["programs"])
+    counted = len(problems) + sum(program.unresolved or 0 for program in job.programs)
     return ways.of_paths(paths), counted
 
 
-def _region(region, zones, zone_of, traced):
+def _region(region: Json, zones: Sequence[Zone], zone_of: Array, traced: bool) -> dict[str, Any]:
     """The figures that a face, a zone and the whole have in common."""
     inspected = region["area"] - region["missed_area"]
-    share = (lambda area: area / inspected) if inspected > 0 else (lambda area: 0.0)
+    share = (lambda area: min(area / inspected, 1.0)) if inspected > 0 else (lambda area: 0.0)
     out = region["above_area"] + region["below_area"]
     known = region["worst"] is not None
     return {
@@ -244,19 +286,19 @@ def _region(region, zones, zone_of, traced):
     }
 
 
-def _worse(one, other):
+def _worse(one: str, other: str) -> str:
     """Of two words."""
     return next(word for word in ("fail", "unknown", "pass") if word in (one, other))
 
 
-def _word(region):
+def _word(region: Json) -> str:
     """Where stock was missed nothing is known: what is good elsewhere has not passed."""
     if region["above_area"] + region["below_area"] > 0:
         return "fail"
     return "pass" if region["passed"] and not region["missed"] else "unknown"
 
 
-def _worst(worst, zones, zone_of):
+def _worst(worst: Json | None, zones: Sequence[Zone], zone_of: Array) -> dict[str, Any] | None:
     if worst is None:
         return None
     number = int(zone_of[worst["sample"]])
@@ -267,11 +309,18 @@ def _worst(worst, zones, zone_of):
         "sample": worst["sample"],
         "point_mm": list(worst["point"]),
         "face": worst["face"] + 1,
-        "zone": zones[number]["name"] if number < len(zones) else None,
+        "zone": zones[number].name if number < len(zones) else None,
     }
 
 
-def _cluster(number, cluster, zones, zone_of, motions, traced):
+def _cluster(
+    number: int,
+    cluster: Json,
+    zones: Sequence[Zone],
+    zone_of: Array,
+    motions: Motions | None,
+    traced: bool,
+) -> dict[str, Any]:
     area = cluster["area"]
     return {
         "number": number,
@@ -285,7 +334,7 @@ def _cluster(number, cluster, zones, zone_of, motions, traced):
         "extent_mm": cluster["extent"],
         "width_mm": cluster["width"],
         "faces": [face + 1 for face in cluster["faces"]],
-        "zones": [zones[z]["name"] if z < len(zones) else None for z in cluster["zones"]],
+        "zones": [zones[z].name if z < len(zones) else None for z in cluster["zones"]],
         "untouched_share": (cluster["untouched_area"] / area if area else 0.0) if traced else None,
         "motion_count": cluster["motion_count"],
         "motions": [
@@ -299,7 +348,7 @@ def _cluster(number, cluster, zones, zone_of, motions, traced):
     }
 
 
-def _motion(number, motions):
+def _motion(number: int, motions: Motions | None) -> dict[str, Any]:
     """Which program, pose and line a motion is of; None where that is not known."""
     if motions is None or number >= len(motions["pose"]):
         return {"motion": number, "program": None, "pose": None, "line": None}
@@ -312,32 +361,34 @@ def _motion(number, motions):
     }
 
 
-def _programs(job, motions):
-    names = [program_name(job, i) for i in range(len(job["programs"]))]
+def _programs(job: Job, motions: Motions | None) -> list[dict[str, Any]]:
+    names = [program_name(job, i) for i in range(len(job.programs))]
     first = [None] * len(names)
     if motions is not None:
         first = np.searchsorted(motions["program"], np.arange(len(names))).tolist()
     return [{"name": name, "first_motion": one} for name, one in zip(names, first)]
 
 
-def _empty(zone, spacing):
-    if "edge_radius_mm" not in zone:
+def _empty(zone: Zone, spacing: float) -> core.Fact:
+    if zone.edge_radius_mm is None:
         return core.Fact(
             "inspection.empty_zone",
             "zone '{name}' holds no sample, or later zones override all of it",
-            name=zone["name"],
+            name=zone.name,
         )
     return core.Fact(
         "inspection.empty_edge_zone",
         "zone '{name}' holds no sample: its faces have no convex edge with a radius below "
         "{radius:g} mm that samples {spacing:g} mm apart could tell, or later zones override all of it",
-        name=zone["name"],
-        radius=zone["edge_radius_mm"],
+        name=zone.name,
+        radius=zone.edge_radius_mm,
         spacing=spacing,
     )
 
 
-def waviness(field, motions, context=None):
+def waviness(
+    field: core.HeightField, motions: Motions | None, context: Context = None
+) -> list[dict[str, Any]]:
     """What core.waviness says by ``motions``, as ``motions.of_paths`` gives them; None: not known."""
     ends, begins = np.zeros((0, 3)), np.zeros(0, dtype=bool)
     if motions is not None:
@@ -345,7 +396,7 @@ def waviness(field, motions, context=None):
     return core.waviness(field, ends, begins, context)
 
 
-def _wave(face):
+def _wave(face: Json) -> dict[str, Any]:
     known = face["pass_distance"] > 0 and face["long_cutoff"] > 0
     return {
         "pass_distance_mm": face["pass_distance"] or None,
@@ -364,28 +415,43 @@ def _wave(face):
     }
 
 
-def _thicknesses(job, field, zones, zone_of, shape, notes, context):
+def _thicknesses(
+    job: Job,
+    field: core.HeightField,
+    zones: Sequence[Zone],
+    zone_of: Array,
+    shape: core.Shape | None,
+    notes: Facts,
+    context: Context,
+) -> list[dict[str, Any] | None]:
     """What each zone's thickness is like; None for those without a tolerance for it."""
-    if not any("thickness_mm" in zone for zone in zones):
+    if not any(zone.thickness_mm for zone in zones):
         return [None] * len(zones)
     others = other_faces(job, field, shape, notes, context)
     return [
         (
-            _thickness(field, zone["thickness_mm"], np.flatnonzero(zone_of == i), others, context)
-            if "thickness_mm" in zone
+            _thickness(field, zone.thickness_mm, np.flatnonzero(zone_of == i), others, context)
+            if zone.thickness_mm
             else None
         )
         for i, zone in enumerate(zones)
     ]
 
 
-def other_faces(job, field, shape, notes, context):
+def other_faces(
+    job: Job | Json,
+    field: core.HeightField,
+    shape: core.Shape | None,
+    notes: Facts,
+    context: Context,
+) -> core.TriangleMesh:
     """Triangles of the design's faces that are not ground."""
     from ..job import workpiece
 
+    job = typed(job)
     sampled = set(np.unique(field.faces).tolist())
     try:  # what cannot be had here must not cost the result
-        shape = shape or workpiece.read_design(job["design"], context)
+        shape = shape or workpiece.read_design(job.design, context)
         others = [face for face in range(shape.face_count) if face not in sampled]
         if others:
             return core.triangulate(shape, DEFLECTION, context, faces=others)
@@ -400,10 +466,16 @@ def other_faces(job, field, shape, notes, context):
     return core.TriangleMesh(np.zeros((0, 3), np.float32), np.zeros((0, 3), np.uint32))
 
 
-def _thickness(field, tolerance, samples, others, context):
+def _thickness(
+    field: core.HeightField,
+    tolerance: Sequence[float],
+    samples: Array,
+    others: core.TriangleMesh,
+    context: Context,
+) -> dict[str, Any]:
     design, deviation = core.measure_thickness(field, samples, others, context)
     known = np.isfinite(deviation)
-    where, value, area = samples[known], deviation[known], field.areas[samples[known]]
+    where, value, area = samples[known], deviation[known], field.areas[samples[known]].astype(float)
     lower, upper = tolerance
     figures = {"tolerance_mm": list(tolerance), "samples": int(len(where))}
     figures["unmeasured"] = int(len(samples) - len(where))
@@ -427,7 +499,7 @@ def _thickness(field, tolerance, samples, others, context):
             "max": float(value.max()),
             "mean": float(np.average(value, weights=area)),
         },
-        "out_share": float(area[beyond > 0].sum() / area.sum()),
+        "out_share": min(float(area[beyond > 0].sum() / area.sum()), 1.0),
         "worst": {
             "value_mm": float(value[k]),
             "limit_mm": float(upper if value[k] - upper >= lower - value[k] else lower),

@@ -1,11 +1,15 @@
 """The verdict in words."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from pathlib import Path
 
+from ..base.kinds import Json
 from . import finish, finish_zones, heat
 
 
-def text(verdict):
+def text(verdict: Json) -> str:
     """A few lines that say it all."""
     failed = [one for one in verdict["zones"] if one["verdict"] != "pass"]
     bad = [one["face"] for one in verdict["faces"] if one["verdict"] == "fail"]
@@ -61,7 +65,7 @@ def text(verdict):
     return "\n".join(lines + [f"  note: {note}" for note in verdict["notes"]])
 
 
-def _finish(zone):
+def _finish(zone: Json) -> str:
     found, told = zone["finish"], []
     if found.get("Ra"):
         ra = found["Ra"]
@@ -79,7 +83,7 @@ def _finish(zone):
     return f"  zone '{zone['name']}': finish: {'; '.join(told)}"
 
 
-def _edge(zone):
+def _edge(zone: Json) -> str:
     edge = zone["edge"]
     radius, loss = edge["radius_mm"], edge["chord_loss_mm"]
     told = f"  zone '{zone['name']}': edges in {edge['sections']} sections: radius "
@@ -90,7 +94,7 @@ def _edge(zone):
     return told + f"{loss['mean']:.3f} mm on the mean, {loss['max']:.3f} mm at most"
 
 
-def _told(cluster, programs):
+def _told(cluster: Json, programs: Sequence[Json]) -> str:
     x, y, z = cluster["worst"]["point_mm"]
     told = (
         f"{cluster['area_mm2']:.1f} mm2 {'too much left' if cluster['side'] == 'above' else 'cut too deep'}, "
@@ -106,7 +110,7 @@ def _told(cluster, programs):
     return told
 
 
-def _place(motion, programs):
+def _place(motion: Json, programs: Sequence[Json]) -> str:
     if motion["program"] is None:
         return f"motion {motion['motion']}"
     place = f"line {motion['line']}" if motion["line"] else f"pose {motion['pose'] + 1}"

@@ -1,21 +1,24 @@
 """The bodies of a job's cell, ``cell.bodies`` of job.schema.json, and the names that every cell has."""
 
-from ..base.files import either
-from ..engine import InputError
-from ..presets.robot_shape import LINKS
-from . import fork, free_run, machine as machines
+from __future__ import annotations
 
-PART, STOCK, WHEEL = "part", "stock", "wheel"
-ROLLERS, PLATE = ("roller_before", "roller_behind"), "platen"  # of a belt without a wheel
+from collections.abc import Sequence
+
+from ..base.files import either
+from ..base.kinds import Json
+from ..engine import InputError
+from ..geometry.body_names import ARMS, FORK, LINKS, PART, PLATE, ROLLERS, RUNS, STOCK, WHEEL
+from . import machine as machines
+
 OF_KIND = {  # names of a belt machine's own bodies, beside the wheel
-    machines.FREE_BELT: (*ROLLERS, *free_run.NAMES, free_run.ARMS),
-    machines.PLATEN: (*ROLLERS, PLATE, *free_run.NAMES, free_run.ARMS),
-    machines.SMALL_WHEEL: (*fork.NAMES, fork.ARMS),
+    machines.FREE_BELT: (*ROLLERS, *RUNS, ARMS),
+    machines.PLATEN: (*ROLLERS, PLATE, *RUNS, ARMS),
+    machines.SMALL_WHEEL: (*RUNS, FORK),
 }
 RESERVED = (PART, STOCK, WHEEL, *LINKS)  # names of the bodies that every cell has
 
 
-def validate(bodies, more=()):
+def validate(bodies: Sequence[Json], more: Sequence[str] = ()) -> None:
     """Raises InputError for what the schema cannot say of a job's bodies. ``more``: names that are taken besides."""
     names = [*RESERVED, *more]
     for i, body in enumerate(bodies):

@@ -1,10 +1,18 @@
 """How large a solved contact is: on a plane or a cylinder, or as a map of pressures has it."""
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..base.kinds import Json
 from ..engine import core
+from .settings import Wheel
+
+if TYPE_CHECKING:
+    from .engine_input import Elasticity
 
 TOUCHED = 0.01  # of the peak pressure: cells with more belong to the contact
 CELLS, MOST_CELLS = 6, 80  # of the contact's grid, across and along the contact
@@ -12,7 +20,7 @@ ALL_CELLS = 400  # across the wheel
 ROUNDS = 3  # of finer grids, until it has them
 
 
-def extents(contact, angle=0.0):
+def extents(contact: Json, angle: float = 0.0) -> tuple[float, float]:
     """(mm along a direction that lies at ``angle`` (rad) to the belt's travel about the contact's z, mm across it)
     of a contact as ``core.single_contact`` or ``core.contact_at`` gives it: where it has more than 1 % of its peak
     pressure, whole cells; 0, 0 without a contact."""
@@ -28,15 +36,24 @@ def extents(contact, angle=0.0):
     return float(along), float(across)
 
 
-def single(wheel, workpiece, compliance, force, spacing, angle=0.0):
+def single(
+    wheel: Wheel,
+    workpiece: Json,
+    elasticity: Elasticity,
+    force: float,
+    spacing: float,
+    angle: float = 0.0,
+) -> tuple[float, float]:
     """``extents`` of a core.single_contact on a grid that is fine enough for it, from cells of ``spacing`` mm.
     Raises InputError."""
-    finest = wheel["width"] / ALL_CELLS
-    cell = min(max(spacing, finest), wheel["width"] / CELLS)
+    finest = wheel.width_mm / ALL_CELLS
+    cell = min(max(spacing, finest), wheel.width_mm / CELLS)
     for _ in range(ROUNDS):
-        found = core.single_contact(wheel, workpiece, compliance, force, None, cell, 1e-3)
+        found = core.single_contact(wheel, workpiece, elasticity, force, None, cell, 1e-3)
         length, breadth = extents(found)
         finer = max(min(length, breadth) / CELLS / 1.5, max(length, breadth) / MOST_CELLS, finest)
+        if not min(length, breadth) > 0.0:  # nothing is pressed, on no grid
+            break
         if min(length, breadth) >= CELLS * cell or finer >= cell:
             break
         cell = finer

@@ -1,147 +1,170 @@
-"""A job's settings as the engine takes them: mm, N, s, rad."""
+"""What the engine takes of a job: its records as they are, and what follows from them."""
 
 import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Union
 
+import numpy as np
+
+from ..base import records
 from ..engine import InputError
-from . import law as laws, machine as machines
+from . import law as laws, machine as machines, surrogate_file
+from .settings import BeltMachine, Compliance, Job, Law, Layer, Simulation, Wheel
+from .surrogate_file import Surrogate
+from .typed import typed
 
-TONNES_PER_KG = 1e-3  # t: N s2/mm
 TONNES_PER_MM3 = 1e-12  # of kg/m3
 
+Elasticity = Union[Compliance, Surrogate]
+Range = tuple[float, float]
 
-def time_law(simulation):
-    """The dict that core.ToolPath takes for a job's ``simulation``: mm, s, rad."""
-    return {
-        "timing": simulation["timing"],
-        "acceleration": float(simulation["path_acceleration_mm_s2"]),
-        "angular_acceleration": math.radians(simulation["angular_acceleration_deg_s2"]),
-        "rotation_speed": math.radians(simulation["rotation_speed_deg_s"]),
-        "default_zone": float(simulation["default_zone_mm"]),
+
+@dataclass(frozen=True, kw_only=True)
+class HeatInput:
+    """How hot the part becomes (HeatRequest, beltgrinding/simulation.h)."""
+
+    part: Any  # core.PartHeat; of what is digested: what it was made of
+    friction: float
+    partition: float  # share of the heat that flows into the work
+    low: float  # of the rise
+    high: float
+    start: float  # degrees C
+    burn: float  # degrees C; 0: not known
+
+
+@dataclass(frozen=True, kw_only=True)
+class FinishInput:
+    """What finish the passes leave (FinishRequest, beltgrinding/simulation.h), whose defaults stand for None."""
+
+    before: float | None = None  # um
+    rest: float | None = None
+    roughness: float  # um; 0: none is computed
+    pressure_exponent: float | None = None
+    speed_exponent: float | None = None
+    feed_exponent: float | None = None
+    cut_exponent: float | None = None
+    reference_pressure: float | None = None  # MPa
+    reference_speed: float | None = None  # mm/s
+    reference_feed: float | None = None  # mm/s
+    pressure: Range | None = None  # MPa
+    speed: Range | None = None  # mm/s
+    feed: Range | None = None  # mm/s
+    cut: Range | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class EngineInput:
+    """What core.simulate and core.contact_at are given, which read it as it is (src/python/simulation_settings.cpp)."""
+
+    machine: BeltMachine
+    law: Law
+    simulation: Simulation
+    elasticity: Elasticity | None  # None: no wheel presses the belt
+    wheel_growth: float = 0.0  # mm
+    shifted_laws: tuple[Law, ...] = ()
+    belt: Mapping[str, float] | None = None  # as a result has it; None: the machine's
+    max_angle: float | None = None  # rad, in place of the simulation's
+    must_touch: bool = True
+    trace: bool = True
+    first_motion: int = 0
+    influence: bool = False
+    force_influence: bool = False
+    lower_limits: np.ndarray[Any, np.dtype[np.float32]] | None = None  # mm
+    heat: HeatInput | None = None
+    finish: FinishInput | None = None
+
+    @property
+    def rigid(self) -> bool:
+        """Whether a tool presses that has no pressure."""
+        return self.elasticity is not None and self.elasticity.model == "geometric"
+
+
+def of(job: Job | Mapping[str, Any]) -> EngineInput:
+    """The input of a validated job. Raises InputError for a surrogate's file that does not fit, and for an actuator that
+    nothing holds back."""
+    job = typed(job)
+    machine = job.belt_machine
+    elasticity: Elasticity | None = None
+    if machines.wheel_presses(machine):
+        if job.law.model == "geometric":
+            elasticity = replace(machine.compliance, model="geometric")
+        else:
+            elasticity = elasticity_of(machine.compliance, machine.wheel)
+    _check_dynamics(machine)
+    rigid = elasticity is not None and elasticity.model == "geometric"
+    return EngineInput(
+        machine=machine,
+        law=job.law,
+        simulation=job.simulation,
+        elasticity=elasticity,
+        wheel_growth=0.0 if rigid else wheel_growth(machine),
+        shifted_laws=tuple(laws.shifted_laws(job.law)),
+    )
+
+
+def elasticity_of(compliance: Compliance, wheel: Wheel) -> Elasticity:
+    """A compliance, or the surrogate that it names. Raises InputError for a surrogate's file that does not fit."""
+    if compliance.model != "surrogate":
+        return compliance
+    factor = compliance.dynamic_modulus_factor
+    asked = {
+        **records.plain(compliance),
+        "youngs_modulus_MPa": factor * compliance.youngs_modulus_MPa,
+        "outer_radius_mm": wheel.radius_mm,
+        "width_mm": wheel.width_mm,
+        "crown_radius_mm": wheel.crown_radius_mm,
+        "profile_mm": wheel.profile_mm,
     }
+    return surrogate_file.arguments(compliance.surrogate_file, asked)
 
 
-def compliance_arguments(compliance, wheel):
-    """The dict that core takes for the elasticity of a wheel (dict of radius, width, crown_radius,
-    mm). Raises InputError for a surrogate's file that does not fit.
-    """
-    if compliance["model"] == "surrogate":
-        from . import surrogate_file
-
-        factor = compliance.get("dynamic_modulus_factor", 1.0)
-        asked = {
-            **compliance,
-            "youngs_modulus_MPa": factor * compliance["youngs_modulus_MPa"],
-            "outer_radius_mm": wheel["radius"],
-            "width_mm": wheel["width"],
-            "crown_radius_mm": wheel["crown_radius"],
-            "profile_mm": wheel["profile"],
-        }
-        return surrogate_file.arguments(compliance["surrogate_file"], asked)
-    names = {
-        "youngs_modulus_MPa": "youngs_modulus",
-        "poissons_ratio": "poissons_ratio",
-        "rim_thickness_mm": "rim_thickness",
-        "belt_tension_N_per_mm": "belt_tension",
-        "belt_bending_N_mm": "belt_bending",
-        "stiffness_MPa_per_mm": "stiffness",
-    }
-    result = {name: float(compliance[key]) for key, name in names.items()}
-    factor = float(compliance.get("dynamic_modulus_factor", 1.0))
-    for name in ("youngs_modulus", "stiffness"):
-        result[name] *= factor
-    result["model"] = compliance["model"]
-    result["layers"] = [
-        {
-            "thickness": float(layer["thickness_mm"]),
-            "youngs_modulus": factor * float(layer["youngs_modulus_MPa"]),
-            "poissons_ratio": float(layer["poissons_ratio"]),
-        }
-        for layer in compliance["layers"]
-    ]
-    return result
-
-
-def wheel_growth(machine):
+def wheel_growth(machine: BeltMachine | Mapping[str, Any]) -> float:
     """mm by which the rim grows by its rotation: rho V_b^2 / R times the integral of (h - x) / M over its thickness, x from
     the core, with M of the slow modulus, since the load stands still against the rubber. 0 without a density, under
     force control and for a rigid tool.
     """
-    compliance = machine["compliance"]
+    machine = records.made(BeltMachine, machine)
+    compliance = machine.compliance
     if not machines.wheel_presses(machine):
         return 0.0
-    if machine["control"] == "force" or compliance["model"] == "geometric":
+    if machine.control == "force" or compliance.model == "geometric":
         return 0.0
-    layers = compliance["layers"] or [
-        {
-            "thickness_mm": compliance["rim_thickness_mm"],
-            "youngs_modulus_MPa": compliance["youngs_modulus_MPa"],
-            "poissons_ratio": compliance["poissons_ratio"],
-        }
-    ]
+    whole = Layer(
+        thickness_mm=compliance.rim_thickness_mm,
+        youngs_modulus_MPa=compliance.youngs_modulus_MPa,
+        poissons_ratio=compliance.poissons_ratio,
+    )
     above, integral = 0.0, 0.0  # mm; mm2/MPa
-    for layer in reversed(layers):
-        thickness, nu = layer["thickness_mm"], layer["poissons_ratio"]
-        modulus = layer["youngs_modulus_MPa"] * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
+    for layer in reversed(compliance.layers or (whole,)):
+        thickness, nu = layer.thickness_mm, layer.poissons_ratio
+        modulus = layer.youngs_modulus_MPa * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
         integral += (above + 0.5 * thickness) * thickness / modulus
         above += thickness
-    density = TONNES_PER_MM3 * machine["wheel_density_kg_m3"]
-    speed = 1000.0 * machine["belt_speed_m_s"]
-    return density * speed**2 * integral / machine["wheel"]["radius_mm"]
+    density = TONNES_PER_MM3 * machine.wheel_density_kg_m3
+    speed = 1000.0 * machine.belt_speed_m_s
+    return density * speed**2 * integral / machine.wheel.radius_mm
 
 
-def force_dynamics(machine):
-    """The dict that core.simulate takes for a job's ``belt_machine.force_dynamics``: s, N s2/mm, N s/mm, mm/s."""
-    given = machine["force_dynamics"]
-    dynamics = {"overshoot": float(given["overshoot_limit"]), "bounce": float(given["bounce_s"])}
-    if given["model"] != "ideal":
-        dynamics["lag"] = float(given["lag_s"])
-    if given["model"] == "actuator":
-        if not given["moving_mass_kg"] > 0.0 and not given["damping_N_s_per_mm"] > 0.0:
-            raise InputError(
-                "job.actuator_without_inertia",
-                "{key}: an actuator needs a moving mass or a damping; for a force that only lags choose the model lag",
-                key="belt_machine.force_dynamics",
-            )
-        dynamics["mass"] = TONNES_PER_KG * given["moving_mass_kg"]
-        dynamics["damping"] = float(given["damping_N_s_per_mm"])
-        dynamics["speed_limit"] = float(given["speed_limit_mm_s"])
-    return dynamics
+def _check_dynamics(machine: BeltMachine) -> None:
+    given = machine.force_dynamics
+    if given.model != "actuator":
+        return
+    if not given.moving_mass_kg > 0.0 and not given.damping_N_s_per_mm > 0.0:
+        raise InputError(
+            "job.actuator_without_inertia",
+            "{key}: an actuator needs a moving mass or a damping; for a force that only lags choose the model lag",
+            key="belt_machine.force_dynamics",
+        )
 
 
-def engine_arguments(job):
-    """(wheel, compliance, law, options) as core.simulate takes them: mm, N, s, rad. Of a free belt or a platen the
-    compliance is empty, and the options have a ``machine``."""
-    machine = job["belt_machine"]
-    wheel = {name[:-3]: value for name, value in machine["wheel"].items()}
-    wheel_presses = machines.wheel_presses(machine)
-    if not wheel_presses:
-        compliance = {}
-    elif job["law"]["model"] == "geometric":
-        compliance = {"model": "geometric"}
-    else:
-        compliance = compliance_arguments(machine["compliance"], wheel)
-    law = laws.engine_law(job["law"])
-    options = {
-        "force_control": machine["control"] == "force",
-        "force": float(machine["force_N"]),
-        "force_travel": float(machine["force_travel_mm"]),
-        "robot_stiffness": float(machine["robot_stiffness_N_per_mm"]),
-        "force_dynamics": force_dynamics(machine),
-        "wheel_growth": wheel_growth(machine) if compliance.get("model") != "geometric" else 0.0,
-        "belt_speed": 1000.0 * machine["belt_speed_m_s"],
-        "belt_wear": float(machine["belt_wear"]),
-        "wear": laws.engine_wear(job["law"]),
-        "belt": laws.engine_belt(machine["belt"]),
-        "heat_limit": 1000.0 * job["law"]["heat_limit_MPa_m_s"],
-        "pressure_limit": float(job["law"]["pressure_limit_MPa"]),
-        "orientation_jump": math.radians(job["simulation"]["orientation_jump_deg"]),
-        "tilt_limit": math.radians(job["simulation"]["tilt_limit_deg"]),
-        "shifted_laws": laws.shifted_laws(job["law"]),
-        "contact_spacing": float(machine["contact_spacing_mm"]),
-        "contact_tolerance": float(machine["contact_tolerance"]),
-        "max_travel": float(job["simulation"]["max_travel_mm"]),
-        "max_angle": math.radians(job["simulation"]["max_angle_deg"]),
+def time_law(simulation: Simulation | Mapping[str, Any]) -> dict[str, Any]:
+    """The dict that core.ToolPath takes for a job's ``simulation``: mm, s, rad."""
+    simulation = records.made(Simulation, simulation)
+    return {
+        "timing": simulation.timing,
+        "acceleration": float(simulation.path_acceleration_mm_s2),
+        "angular_acceleration": math.radians(simulation.angular_acceleration_deg_s2),
+        "rotation_speed": math.radians(simulation.rotation_speed_deg_s),
+        "default_zone": float(simulation.default_zone_mm),
     }
-    if not wheel_presses:
-        options["machine"] = machines.engine_machine(machine)
-    return wheel, compliance, law, options

@@ -1,10 +1,15 @@
 """What a job's result depends on, by SHA-256, so that a result can be traced to its inputs."""
 
+from __future__ import annotations
+
 import hashlib
 import json
 import os
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
+from ..base.kinds import Json
 from ..base.regular_files import open_regular
 from ..engine import InputError
 
@@ -13,7 +18,7 @@ CHUNK = 1 << 20  # bytes
 LARGEST = 1 << 40  # bytes
 
 
-def digests(job):
+def digests(job: Json) -> list[dict[str, Any]]:
     """List of dicts, one an input of a validated job: ``what`` (the job's key), ``file`` (its path, or
     None for what the job itself holds), ``bytes`` and ``sha256`` (None where there is no such file).
     The job itself comes first, as its JSON with sorted keys and without blanks.
@@ -27,12 +32,12 @@ def digests(job):
     return found
 
 
-def files(job):
+def files(job: Json) -> list[Path]:
     """Paths of all files that a validated job reads."""
     return [path for _, path, _ in _inputs(job) if path is not None]
 
 
-def _inputs(job):
+def _inputs(job: Json) -> Iterator[tuple[str, Path | None, Any]]:
     """(the job's key, path or None, what the job itself holds) of each input."""
     for key in ("design", "stock"):
         if "file" in job[key]:
@@ -55,15 +60,14 @@ def _inputs(job):
         yield "belt_machine.compliance.surrogate_file", Path(surrogate), None
 
 
-def _program_files(path, values=None):
+def _program_files(path: Path | str, values: str | Json | None = None) -> list[Path]:
     from ..programs.registry import side_files, values_beside
 
     path = Path(path)
-    if isinstance(values, dict):  # part of the job, and so of its own digest
-        given = []
-    else:
-        values = Path(values) if values else values_beside(path)
-        given = [values] if os.path.isfile(values) else []
+    given = []
+    if not isinstance(values, Mapping):  # else part of the job, and so of its own digest
+        said = Path(values) if values else values_beside(path)
+        given = [said] if os.path.isfile(said) else []
     try:
         near = sorted(path.parent.iterdir())
     except OSError:
@@ -77,20 +81,20 @@ def _program_files(path, values=None):
     return [path, *given, *beside, *(p for p in side_files(path) if p not in beside)]
 
 
-def canonical(data):
+def canonical(data: Any) -> bytes:
     """The bytes of plain data that its hash is taken of."""
-    return json.dumps(data, sort_keys=True, separators=(",", ":")).encode()
+    return json.dumps(data, sort_keys=True, separators=(",", ":"), allow_nan=False).encode()
 
 
-def _held(what, data):
+def _held(what: str, data: Any) -> dict[str, Any]:
     return _digest(what, None, canonical(data))
 
 
-def _text(what, text):
+def _text(what: str, text: str) -> dict[str, Any]:
     return _digest(what, None, text.encode("utf-8", "surrogatepass"))
 
 
-def _digest(what, file, data):
+def _digest(what: str, file: str | None, data: bytes) -> dict[str, Any]:
     return {
         "what": what,
         "file": file,
@@ -99,7 +103,7 @@ def _digest(what, file, data):
     }
 
 
-def file_digest(what, path):
+def file_digest(what: str, path: Path | str) -> dict[str, Any]:
     """The dict of one file; of what is none (a device would never end) bytes and sha256 are None."""
     found = hashlib.sha256()
     size = 0

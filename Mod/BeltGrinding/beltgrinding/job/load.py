@@ -3,22 +3,48 @@
 The format is Resources/schema/job.schema.json; every default stands there and nowhere else.
 """
 
+from __future__ import annotations
+
 from pathlib import Path
+from typing import Any
 
 from ..base import schemas
 from ..base.files import absolute, in_file
+from ..base.kinds import Json
 from ..engine import InputError
 from ..presets import robot as robots
 from . import bodies as job_bodies, machine
+from .law import check_calibration
 from .tolerances import check_zones
+from .typed import typed as typed  # for macros
+
+# Heat capacity times density of a material, J/(m3 K): from near absolute zero to more than any metal's.
+STORED = (1e3, 1e7)
 
 
-def schema():
+def schema() -> dict[str, Any]:
     """The JSON Schema of a job, as a dict."""
     return schemas.schema("job")
 
 
-def load(path):
+def check_stored(heat: Json | None) -> None:
+    """Refuses a job's ``heat`` (or None) whose material stores what none does. Raises InputError."""
+    if heat is None:
+        return
+    stored = heat["heat_capacity_J_kgK"] * heat["density_kg_m3"]
+    least, most = STORED
+    if not least <= stored <= most:
+        raise InputError(
+            "job.heat_stored",
+            "{key}: times the density it is {stored:.3g} J/(m3 K); materials have {least:.3g} to {most:.3g}",
+            key="heat.heat_capacity_J_kgK",
+            stored=stored,
+            least=least,
+            most=most,
+        )
+
+
+def load(path: Path | str) -> dict[str, Any]:
     """Reads and validates a job file; its paths come back absolute. Raises InputError."""
     path = Path(path)
     job = schemas.read_json(path)
@@ -28,12 +54,18 @@ def load(path):
         raise in_file(error, path) from None
 
 
-def validate(job, folder="."):
+def validate(job: Json, folder: Path | str = ".") -> dict[str, Any]:
     """A copy of ``job`` with all defaults filled in and paths absolute (relative to ``folder``).
 
     Raises InputError naming the key that is unknown, missing or wrong.
     """
-    job = schemas.checked(job, schema(), "job")
+    checked: dict[str, Any] = schemas.checked(job, schema(), "job")
+    _complete(checked, folder)
+    return checked
+
+
+def _complete(job: dict[str, Any], folder: Path | str) -> None:
+    """Fills in what the schema cannot say, and refuses what it cannot refuse."""
     for holder in [job["design"], job["stock"], *job["programs"], *job["cell"]["bodies"]]:
         if "file" in holder:
             holder["file"] = absolute(folder, holder["file"])
@@ -51,8 +83,10 @@ def validate(job, folder="."):
                 "{key}: the least value is more than the greatest",
                 key=f"heat.{name}",
             )
+    check_stored(job.get("heat"))
     machine.filled(job["belt_machine"], schema()["properties"]["belt_machine"])
     machine.check(job)
+    check_calibration(job["law"]["calibration"])
     check_finish(job.get("finish"))
     compliance = job["belt_machine"]["compliance"]
     if compliance["surrogate_file"]:
@@ -85,13 +119,12 @@ def validate(job, folder="."):
             key="inspection.tolerance_mm",
         )
     check_zones(job["inspection"]["zones"], job["design"]["faces"], "finish" in job)
-    return job
 
 
-def check_finish(finish):
+def check_finish(finish: Json | None) -> None:
     """Raises InputError for a job's ``finish`` (None: none) that cannot be, though the schema takes it."""
-    model = (finish or {}).get("model")
-    if model is None:
+    model = None if finish is None else finish.get("model")
+    if finish is None or model is None:
         return
     if "grit" not in finish:
         raise InputError(

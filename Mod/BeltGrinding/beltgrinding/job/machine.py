@@ -1,27 +1,37 @@
 """What kind of belt machine a job has: a contact wheel, a free belt, a platen, a small wheel in a fork."""
 
-import math
+from __future__ import annotations
 
-from ..base import schemas
+import math
+from typing import TYPE_CHECKING, Any
+
+from ..base import records, schemas
+from ..base.kinds import Json, known
 from ..engine import InputError
-from . import fork, free_run
+from ..geometry import fork, free_run
+from .settings import BeltMachine
+
+if TYPE_CHECKING:
+    from ..engine import core
 
 WHEEL, FREE_BELT, PLATEN = "contact_wheel", "free_belt", "platen"
 SMALL_WHEEL = "small_wheel"
 WHEELS = (WHEEL, SMALL_WHEEL)  # a wheel presses the belt
 
 
-def kind(machine):
+def kind(machine: BeltMachine | Json) -> str:
     """Of a job's ``belt_machine``; without the key, as in files of earlier versions, a contact wheel."""
+    if isinstance(machine, BeltMachine):
+        return machine.kind or WHEEL
     return machine.get("kind", WHEEL)
 
 
-def wheel_presses(machine):
+def wheel_presses(machine: BeltMachine | Json) -> bool:
     """Whether a wheel presses the belt of a job's ``belt_machine`` on the part."""
     return kind(machine) in WHEELS
 
 
-def filled(machine, rules):
+def filled(machine: dict[str, Any], rules: Json) -> None:
     """Puts the defaults of the parts that its kind needs into a validated ``belt_machine``; ``rules``: its schema."""
     needed = {
         WHEEL: (),
@@ -33,7 +43,7 @@ def filled(machine, rules):
         machine[name] = schemas.filled(machine.get(name, {}), rules["properties"][name])
 
 
-def check(job):
+def check(job: Json) -> None:
     """Raises InputError for what the schema cannot say of a validated job's belt machine."""
     machine = job["belt_machine"]
     if wheel_presses(machine):
@@ -48,11 +58,12 @@ def check(job):
     check_run(machine)
 
 
-def check_run(machine):
+def check_run(machine: BeltMachine | Json) -> None:
     """Raises InputError where a ``belt_machine`` with its defaults cannot be: a contact beside its rollers, a fork that ends
     within its wheel."""
+    machine = records.made(BeltMachine, machine)
     if kind(machine) == SMALL_WHEEL:
-        radius = machine["wheel"]["radius_mm"]
+        radius = machine.wheel.radius_mm
         if not fork.holds(machine):
             raise InputError(
                 "job.short_fork",
@@ -62,13 +73,13 @@ def check_run(machine):
             )
     if wheel_presses(machine):
         return
-    run = machine["free_run"]
-    if not abs(run["position_mm"]) < 0.5 * run["length_mm"]:
+    run = known(machine.free_run)
+    if not abs(run.position_mm) < 0.5 * run.length_mm:
         raise InputError(
             "job.belt_position",
             "{key}: the contact must lie between the rollers, less than {most:.4g} mm from the middle",
             key="belt_machine.free_run.position_mm",
-            most=0.5 * run["length_mm"],
+            most=0.5 * run.length_mm,
         )
     if kind(machine) == PLATEN:
         _check_platen(machine)
@@ -82,21 +93,21 @@ def check_run(machine):
         )
 
 
-def _check_platen(machine):
-    platen, run = machine["platen"], machine["free_run"]
-    radius = platen["radius_mm"]
+def _check_platen(machine: BeltMachine) -> None:
+    platen, run = known(machine.platen), known(machine.free_run)
+    radius = platen.radius_mm
     if radius > 0.0:
-        least = 0.5 * platen["length_mm"] / math.sin(free_run.STEEPEST)
+        least = 0.5 * platen.length_mm / math.sin(free_run.STEEPEST)
         if radius < least:
             raise InputError(
                 "job.platen_radius",
                 "{key}: a platen of {length:.4g} mm would turn by more than 60 degrees to its ends; give {least:.4g} mm or "
                 "more, or 0 for a flat one",
                 key="belt_machine.platen.radius_mm",
-                length=platen["length_mm"],
+                length=platen.length_mm,
                 least=least,
             )
-        thick = sum(layer["thickness_mm"] for layer in platen["layers"])
+        thick = sum(layer.thickness_mm for layer in platen.layers)
         if thick >= radius:
             raise InputError(
                 "job.platen_layers",
@@ -105,7 +116,7 @@ def _check_platen(machine):
                 thick=thick,
                 radius=radius,
             )
-    most = run["length_mm"] - 2.0 * abs(run["position_mm"])
+    most = run.length_mm - 2.0 * abs(run.position_mm)
     if free_run.length_on(machine) > most:
         raise InputError(
             "job.platen_length",
@@ -115,7 +126,7 @@ def _check_platen(machine):
         )
 
 
-def need_wheel(job, what):
+def need_wheel(job: Json, what: core.Fact) -> None:
     """Raises InputError unless a wheel presses the belt. ``what``: a core.Fact, what knows no other kind."""
     found = kind(job["belt_machine"])
     if found not in WHEELS:
@@ -126,34 +137,3 @@ def need_wheel(job, what):
             key="belt_machine.kind",
             kind=found,
         )
-
-
-def engine_machine(machine):
-    """The dict that core.simulate takes as the option ``machine``: mm, N, MPa. Of a free belt or a platen."""
-    run = machine["free_run"]
-    result = {
-        "kind": kind(machine),
-        "length": float(run["length_mm"]),
-        "position": float(run["position_mm"]),
-        "tensioned": run["rollers"] == "tensioned",
-        "width": float(run["width_mm"]),
-        "thickness": float(run["thickness_mm"]),
-        "youngs_modulus": float(run["youngs_modulus_MPa"]),
-        "poissons_ratio": float(run["poissons_ratio"]),
-        "tension": float(run["tension_N_per_mm"]),
-        "surface_stiffness": float(run["surface_stiffness_MPa_per_mm"]),
-    }
-    if kind(machine) == PLATEN:
-        platen = machine["platen"]
-        result["platen_length"] = float(platen["length_mm"])
-        result["platen_radius"] = float(platen["radius_mm"])
-        result["layer_surface_stiffness"] = float(platen["surface_stiffness_MPa_per_mm"])
-        result["layers"] = [
-            {
-                "thickness": float(layer["thickness_mm"]),
-                "youngs_modulus": float(layer["youngs_modulus_MPa"]),
-                "poissons_ratio": float(layer["poissons_ratio"]),
-            }
-            for layer in platen["layers"]
-        ]
-    return result

@@ -1,20 +1,31 @@
 """Poses of a job's programs: as arrays for the simulator, as lists for the job file."""
 
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, TypeAlias
+
 import numpy as np
 
-from ..base import frames
+from ..base import frames, records
+from ..base.kinds import Array, Facts, Floats, Json, known
 from ..engine import InputError, core
+from .settings import Job, Program
 
 DEFAULT_FEED = 100.0  # mm/s, for poses and programs that set none
+PoseOf: TypeAlias = (
+    "Callable[[Sequence[float]], Floats]"  # a frame (4, 4) of joint angles in degrees
+)
 
 
-def program_name(job, index):
+def program_name(job: Job | Json, index: int) -> str:
     """How a job's program is called in messages."""
-    program = job["programs"][index]
-    return program.get("name") or program.get("file", f"programs[{index}]")
+    held = job.programs if isinstance(job, Job) else job["programs"]
+    program = records.made(Program, held[index])
+    return program.name or program.file or f"programs[{index}]"
 
 
-def list_poses(arrays):
+def list_poses(arrays: Mapping[str, Array]) -> list[dict[str, Any]]:
     """Arrays (as ``program_arrays`` gives them) as the job file's list of poses."""
     turns = frames.to_quaternions(arrays["frames"][:, :3, :3])
     rows = zip(
@@ -41,7 +52,7 @@ def list_poses(arrays):
     return poses
 
 
-def listed_poses(poses, where):
+def listed_poses(poses: Sequence[Json], where: str) -> dict[str, Array]:
     """Arrays of a program that is given pose by pose. Raises InputError."""
     values = np.array(
         [[p[k] for k in ("x_mm", "y_mm", "z_mm", "qw", "qx", "qy", "qz")] for p in poses],
@@ -62,40 +73,49 @@ def listed_poses(poses, where):
     }
 
 
-def program_arrays(program, where, warnings, pose_of=None, holding=None):
+def program_arrays(
+    program: Program | Json,
+    where: str,
+    warnings: Facts,
+    pose_of: PoseOf | None = None,
+    holding: str | None = None,
+) -> dict[str, Array]:
     """dict(frames, feeds, forces, rapid, lines, zones, gaps) of a job's program, overrides applied.
     ``pose_of``: of joint angles, as in ``Program.path_arrays``. ``holding``: cell.holding, with which a
     program must go.
     """
-    problems = []
-    if "poses" in program and ("roll" in program or "roll_direction" in program):
+    program = records.made(Program, program)
+    problems: Sequence[core.Fact] = []
+    if program.poses is not None and (
+        program.roll is not None or program.roll_direction is not None
+    ):
         raise InputError(
             "job.roll_of_poses",
             "{program}: roll is for a file of tool axes; the poses given here are whole",
             program=where,
         )
-    if "poses" in program and "values" in program:
+    if program.poses is not None and program.values is not None:
         raise InputError(
             "job.values_of_poses",
             "{program}: values are for a program's file; the poses given here are whole",
             program=where,
         )
-    if "poses" in program:
-        arrays = listed_poses(program["poses"], where)
+    if program.poses is not None:
+        arrays = listed_poses(program.poses, where)
     else:
         from ..programs.registry import read_program, told_problems
 
         read = read_program(
-            program["file"],
-            program.get("roll"),
-            program.get("roll_direction"),
-            program.get("values"),
+            known(program.file),
+            program.roll,
+            program.roll_direction,
+            program.values,
         )
         arrays = read.path_arrays(DEFAULT_FEED, pose_of)  # may find more problems
         read.check_holding(holding)
-        problems = told_problems(read, None if "feed_mm_s" in program else DEFAULT_FEED)
-    warnings += problems
+        problems = told_problems(read, None if program.feed_mm_s is not None else DEFAULT_FEED)
     count = len(arrays["frames"])
+    warnings += problems if count > 1 else problems[1:]  # the error has the first
     if count < 2:
         first = (
             core.Fact("job.first_problem", " ({problem})", problem=problems[0]) if problems else ""
@@ -107,8 +127,8 @@ def program_arrays(program, where, warnings, pose_of=None, holding=None):
             count=count,
             problem=first,
         )
-    if "force_N" in program:
-        arrays["forces"] = np.full(count, float(program["force_N"]))
-    if "feed_mm_s" in program:
-        arrays["feeds"] = np.full(count, float(program["feed_mm_s"]))
+    if program.force_N is not None:
+        arrays["forces"] = np.full(count, float(program.force_N))
+    if program.feed_mm_s is not None:
+        arrays["feeds"] = np.full(count, float(program.feed_mm_s))
     return arrays

@@ -4,7 +4,14 @@ What it changes is small against the tolerance off the edges, and large at them:
 verdict is given by it alone.
 """
 
+from __future__ import annotations
+
+from typing import Any
+
+from ..base.kinds import Facts, Json
 from ..engine import core
+from .settings import Job
+from .typed import typed
 
 FULL, COARSE = "full", "coarse"
 SAMPLES = (
@@ -13,30 +20,32 @@ SAMPLES = (
 TOLERANCE = 1e-2  # of the contact
 
 
-def mode(job):
+def mode(job: Job | Json) -> str:
     """ "full" or "coarse"; of a job that an older version wrote: full."""
+    if isinstance(job, Job):
+        return job.resolution.mode if job.resolution else FULL
     return job.get("resolution", {}).get("mode", FULL)
 
 
-def with_mode(job, mode):
+def with_mode(job: Json, mode: str) -> dict[str, Any]:
     """The job in another mode."""
     return {**job, "resolution": {**job.get("resolution", {}), "mode": mode}}
 
 
-def applied(job, warnings):
+def applied(job: Json, warnings: Facts) -> Json:
     """The job, whose spacing is settled, as its mode has it run; that it is coarse is added to ``warnings``."""
     if mode(job) == FULL:
         return job
-    sampling, machine = job["sampling"], job["belt_machine"]
-    spacing = max(sampling["spacing_mm"], SAMPLES * machine["contact_spacing_mm"])
-    factor = spacing / sampling["spacing_mm"]
-    sampling = {
-        **sampling,
+    read = typed(job)
+    sampling, machine = read.sampling, read.belt_machine
+    spacing = max(sampling.spacing_mm, SAMPLES * machine.contact_spacing_mm)
+    factor = spacing / sampling.spacing_mm
+    finer = {
         "spacing_mm": spacing,
-        "edge_spacing_mm": factor * sampling["edge_spacing_mm"],
-        "precision_mm": factor**2 * sampling["precision_mm"],  # chords bulge by the square of it
+        "edge_spacing_mm": factor * sampling.edge_spacing_mm,
+        "precision_mm": factor**2 * sampling.precision_mm,  # chords bulge by the square of it
     }
-    tolerance = max(machine["contact_tolerance"], TOLERANCE)
+    tolerance = max(machine.contact_tolerance, TOLERANCE)
     warnings.append(
         core.Fact(
             "job.coarse_resolution",
@@ -47,5 +56,8 @@ def applied(job, warnings):
             key="resolution.mode",
         )
     )
-    machine = {**machine, "contact_tolerance": tolerance}
-    return {**job, "sampling": sampling, "belt_machine": machine}
+    return {
+        **job,
+        "sampling": {**job["sampling"], **finer},
+        "belt_machine": {**job["belt_machine"], "contact_tolerance": tolerance},
+    }

@@ -4,14 +4,22 @@ Rules of thumb, each from what would be missed otherwise: a contact that lies on
 that has too few, a curved face whose samples' chords are far from it.
 """
 
+from __future__ import annotations
+
 import math
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from ..base import kept
+from ..base.kinds import Context, Facts, Floats, Json
 from ..base.quantile import weighted_quantile
 from ..engine import InputError, core
 from . import contact_extents, engine_input
+from .engine_input import Elasticity
+from .settings import Job, Wheel
+from .typed import typed
 
 LOOK, GLANCE = 4000, 400  # samples of a first look at the faces, and of one at their size
 MOST = 400_000  # samples, of a spacing that is chosen
@@ -32,29 +40,36 @@ MOST_ON_PLANE = 2.0  # of the wheel's diameter or width: no contact with its who
 WITHIN = 0.05  # of the contact on a plane: a part that is smaller has another unit, probably
 
 
-def settled(job, shape, told, context=None):
+def settled(
+    job: Json, shape: core.Shape, told: Facts, context: Context = None
+) -> tuple[dict[str, Any], bool]:
     """(the job with a spacing: the one that it gives, or else the chosen one; whether it was chosen). What is
     too coarse is added to the list ``told``, as Facts. Raises InputError, Cancelled."""
-    faces = [face - 1 for face in job["design"]["faces"]] or range(shape.face_count)
-    seen = look(job, shape, faces, context)
-    given = job["sampling"]["spacing_mm"]
-    spacing = given or chosen(job, seen)
-    told += warnings(job, seen, spacing)
+    read = typed(job)
+    faces = [face - 1 for face in read.design.faces] or range(shape.face_count)
+    seen = look(read, shape, faces, context)
+    given = read.sampling.spacing_mm
+    spacing = given or chosen(read, seen)
+    told += warnings(read, seen, spacing)
     return {**job, "sampling": {**job["sampling"], "spacing_mm": spacing}}, given == 0
 
 
-def by_curvature(job):
+def by_curvature(job: Job | Json) -> bool:
     """Whether samples lie closer together where the faces are curved."""
-    return max(job["sampling"]["precision_mm"], job["sampling"]["edge_spacing_mm"]) > 0
+    job = typed(job)
+    return max(job.sampling.precision_mm, job.sampling.edge_spacing_mm) > 0
 
 
-def look(job, shape, faces, context=None):
+def look(
+    job: Job | Json, shape: core.Shape, faces: Sequence[int], context: Context = None
+) -> dict[str, Any]:
     """What the rules need to know of the faces (from 0) of a core.Shape: dict(area mm2, size mm (largest
     extent), radius mm (of curvature; inf: plane), width mm (of the narrowest face that counts), narrow: that
     face from 1, length, breadth mm: the contact's extents on a place as curved as a quarter of the area,
     plane mm: the larger one on a plane; None for a rigid tool, plane also where the faces are so large that nobody
     asks how large it is).
     """
+    job = typed(job)
     name = kept.name(shape)
     if name is None:
         seen = _look_at_faces(shape, faces, context)
@@ -62,8 +77,8 @@ def look(job, shape, faces, context=None):
         look = lambda: _look_at_faces(shape, faces, context)
         seen = kept.get("look", lambda: (name, list(faces)), look, lambda _: SMALL)
     length, breadth = _contact(job, seen["convex"]) or (None, None)
-    wheel = job["belt_machine"]["wheel"]
-    most = MOST_ON_PLANE * max(2.0 * wheel["radius_mm"], wheel["width_mm"])
+    wheel = job.belt_machine.wheel
+    most = MOST_ON_PLANE * max(2.0 * wheel.radius_mm, wheel.width_mm)
     plane = _contact(job, 0.0) if seen["size"] < WITHIN * most else None
     return {
         **{key: value for key, value in seen.items() if key != "convex"},
@@ -73,7 +88,7 @@ def look(job, shape, faces, context=None):
     }
 
 
-def _look_at_faces(shape, faces, context):
+def _look_at_faces(shape: core.Shape, faces: Sequence[int], context: Context) -> dict[str, Any]:
     """What of ``look`` the faces alone decide; and convex: 1/mm, the curvature at which the contact is looked at."""
     area = _area(shape, faces)
     spacing = math.sqrt(area / LOOK)
@@ -83,7 +98,7 @@ def _look_at_faces(shape, faces, context):
     widths = _widths(field)
     order = sorted(widths, key=lambda face: -widths[face][0])
     counted = np.searchsorted(np.cumsum([widths[face][1] for face in order]), SHARE * area)
-    narrow = order[min(counted, len(order) - 1)]
+    narrow = order[min(int(counted), len(order) - 1)]
     return {
         "convex": float(weighted_quantile(np.maximum(bend.max(axis=1), 0.0), weights, TOUCHED)),
         "area": area,
@@ -94,8 +109,11 @@ def _look_at_faces(shape, faces, context):
     }
 
 
-def size(job, shape, faces, context=None):
+def size(
+    job: Job | Json, shape: core.Shape, faces: Sequence[int], context: Context = None
+) -> dict[str, Any]:
     """The size, area and plane of ``look``, which cost less."""
+    job = typed(job)
     area = _area(shape, faces)
     field, _ = core.sample_faces(shape, list(faces), math.sqrt(area / GLANCE), context=context)
     plane = _contact(job, 0.0)
@@ -106,14 +124,14 @@ def size(job, shape, faces, context=None):
     }
 
 
-def _area(shape, faces):
+def _area(shape: core.Shape, faces: Sequence[int]) -> float:
     area = sum(shape.face_area(face) for face in faces)
     if not area > 0:
         raise InputError("job.no_area", "none of the chosen faces has an area")
     return area
 
 
-def unit_doubts(seen):
+def unit_doubts(seen: Json) -> Facts:
     """Facts of faces, by ``look`` or ``size``, that are too small for their unit to be right."""
     if seen["plane"] is None or seen["size"] >= WITHIN * seen["plane"]:
         return []
@@ -128,10 +146,11 @@ def unit_doubts(seen):
     ]
 
 
-def chosen(job, seen):
+def chosen(job: Job | Json, seen: Json) -> float:
     """The spacing in mm that the rules give; ``seen``: by ``look``. Raises InputError for faces that are
     too large for the contact to be seen."""
-    lower, upper = job["inspection"]["tolerance_mm"]
+    job = typed(job)
+    lower, upper = job.inspection.tolerance_mm
     wanted = [COARSEST, seen["width"] / ACROSS_FACE]
     if seen["length"] is not None:
         wanted.append(min(seen["length"], seen["breadth"]) / ACROSS_CONTACT)
@@ -153,10 +172,11 @@ def chosen(job, seen):
     return float(f"{max(min(wanted), least):.2g}")
 
 
-def warnings(job, seen, spacing):
+def warnings(job: Job | Json, seen: Json, spacing: float) -> Facts:
     """Facts of what is too coarse, or of another unit probably, at a spacing in mm."""
+    job = typed(job)
     found = unit_doubts(seen)
-    lower, upper = job["inspection"]["tolerance_mm"]
+    lower, upper = job.inspection.tolerance_mm
     if seen["length"] is not None:
         across = min(seen["length"], seen["breadth"])
         if spacing * LEAST_ACROSS_CONTACT > across:
@@ -170,7 +190,7 @@ def warnings(job, seen, spacing):
                     wanted=across / ACROSS_CONTACT,
                 )
             )
-        cell = max(job["belt_machine"]["contact_spacing_mm"], SAMPLES_A_CELL * spacing)
+        cell = max(job.belt_machine.contact_spacing_mm, SAMPLES_A_CELL * spacing)
         if cell * LEAST_ACROSS_CONTACT / 2.0 > across:
             found.append(
                 core.Fact(
@@ -210,21 +230,23 @@ def warnings(job, seen, spacing):
     return found
 
 
-def doubted_by(job):
+def doubted_by(job: Job | Json) -> tuple[float, str] | None:
     """All of a job besides its faces and their sampling that ``edge_doubts`` reads, if it is asked at all."""
-    machine = job["belt_machine"]
+    job = typed(job)
+    machine = job.belt_machine
     if not by_curvature(job):
         return None
-    return machine["contact_spacing_mm"], machine["compliance"]["model"]
+    return machine.contact_spacing_mm, machine.compliance.model
 
 
-def edge_doubts(job, field):
+def edge_doubts(job: Job | Json, field: core.HeightField) -> Facts:
     """Facts of convex places of a job's core.HeightField that are sharper than the contact's cells are wide:
     what is ground there is not resolved."""
-    machine = job["belt_machine"]
-    if machine["compliance"]["model"] == "geometric":
+    job = typed(job)
+    machine = job.belt_machine
+    if machine.compliance.model == "geometric":
         return []  # cuts sample by sample
-    cell = max(machine["contact_spacing_mm"], SAMPLES_A_CELL * field.spacing)
+    cell = max(machine.contact_spacing_mm, SAMPLES_A_CELL * field.spacing)
     bend, areas = curvatures(field)
     sharpest = bend.max(axis=1)
     sharp = sharpest * cell > 1.0
@@ -245,7 +267,7 @@ def edge_doubts(job, field):
     ]
 
 
-def curvatures(field):
+def curvatures(field: core.HeightField) -> tuple[Floats, Floats]:
     """(principal curvatures (m, 2) in 1/mm, positive where the surface is convex; areas (m,) in mm2) of the
     triangles of a core.HeightField, by how the normals change along their edges."""
     corners = field.triangles
@@ -265,7 +287,7 @@ def curvatures(field):
     return np.linalg.eigvalsh(shape), 0.5 * size
 
 
-def _widths(field):
+def _widths(field: core.HeightField) -> dict[int, tuple[float, float]]:
     """{face from 0: (mm, mm2)}: twice the area over the border's length, as of a strip; and the area."""
     corners = field.triangles
     p = field.points[corners]
@@ -290,28 +312,38 @@ def _widths(field):
     }
 
 
-def _contact(job, curvature):
+def _contact(job: Job, curvature: float) -> tuple[float, float] | None:
     """(length along the belt's travel, breadth along the wheel's axis) in mm of the contact on a cylinder of
     ``curvature``, the lesser of those along and across its axis; None for a rigid tool, for a belt without a wheel, or where
     it cannot be found."""
-    wheel, compliance, _, options = engine_input.engine_arguments(job)
-    if "machine" in options or compliance["model"] == "geometric":
+    given = engine_input.of(job)
+    machine = given.machine
+    if given.elasticity is None or given.rigid:
         return None
-    given = wheel, compliance, options["force"], options["contact_spacing"], curvature
-    return kept.get("contact", lambda: given, lambda: _extents(*given), lambda _: SMALL)
+    wanted = (
+        machine.wheel,
+        given.elasticity,
+        machine.force_N,
+        machine.contact_spacing_mm,
+        curvature,
+    )
+    return kept.get("contact", lambda: wanted, lambda: _extents(*wanted), lambda _: SMALL)
 
 
-def _extents(wheel, compliance, force, spacing, curvature):
+def _extents(
+    wheel: Wheel, elasticity: Elasticity, force: float, spacing: float, curvature: float
+) -> tuple[float, float] | None:
     found = []
     curved = curvature * FLAT > 1.0
     for angle in (0.0, 90.0) if curved else (0.0,):
-        workpiece = {"shape": "plane"}
+        workpiece: dict[str, Any] = {"shape": "plane"}
         if curved:
             workpiece = {"shape": "cylinder", "radius": 1.0 / curvature, "axis_angle_deg": angle}
         try:
-            found.append(contact_extents.single(wheel, workpiece, compliance, force, spacing))
+            found.append(contact_extents.single(wheel, workpiece, elasticity, force, spacing))
         except ValueError:  # an InputError, or a wheel beyond all bounds: the run tells
             continue
     if not found:
         return None
-    return tuple(min(values) for values in zip(*found))
+    lengths, breadths = zip(*found)
+    return min(lengths), min(breadths)

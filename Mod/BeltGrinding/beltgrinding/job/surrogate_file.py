@@ -1,14 +1,21 @@
 """The files of surrogates of the contact and of their databases, numpy archives both; a surrogate as the engine takes it."""
 
+from __future__ import annotations
+
 import hashlib
 import io
 import json
+import math
 import zipfile
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, Literal
 
 import numpy as np
 
 from ..base.files import cannot_be_written, write_whole
+from ..base.kinds import Array, Floats, Json
 from ..base.regular_files import read_regular
 from ..engine import InputError
 
@@ -29,8 +36,19 @@ DATABASE = {"gap": 3, "coverage": 3, "pressure": 3, "approach": 1, "force": 1, "
 REGRESSION = ("vectors", "coefficients", "mean", "deviation", "rho", "gamma", "scale")
 
 
-def arguments(path, wheel):
-    """The surrogate of a file as ``core`` takes a compliance. ``wheel``: the one that it is asked
+@dataclass(frozen=True, kw_only=True)
+class Surrogate:
+    """A trained surrogate, as core takes it in place of a compliance."""
+
+    model: Literal["surrogate"] = "surrogate"
+    name: str
+    cell: float  # mm
+    rim_thickness: float  # mm
+    regression: dict[str, Any]  # as core.train_regression gives it
+
+
+def arguments(path: Path | str, wheel: Json) -> Surrogate:
+    """The Surrogate of a file. ``wheel``: the one that it is asked
     for, keys of ``WHEEL``. Raises InputError if it was trained for another.
     """
     surrogate, digest = load(path)
@@ -52,7 +70,7 @@ def arguments(path, wheel):
                 trained=trained,
                 asked=asked,
             )
-    error = surrogate["report"].get("held_out_L1_mean", float("nan"))
+    error = _number(surrogate["report"].get("held_out_L1_mean"))
     name = (
         f"surrogate: support-vector regression, {len(surrogate['coefficients'])} vectors, "
         f"held-out error {100 * error:.1f} % (L1), file {digest[:16]}"
@@ -60,48 +78,50 @@ def arguments(path, wheel):
     return core_arguments(surrogate, name)
 
 
-def core_arguments(surrogate, name):
-    return {
-        "model": "surrogate",
-        "name": name,
-        "cell": float(surrogate["cell"]),
-        "rim_thickness": surrogate["wheel"]["rim_thickness_mm"],
-        "regression": {key: surrogate[key] for key in REGRESSION},
-    }
+def core_arguments(surrogate: Json, name: str) -> Surrogate:
+    """The Surrogate of what ``load`` gives, by the name that results have."""
+    return Surrogate(
+        name=name,
+        cell=float(surrogate["cell"]),
+        rim_thickness=surrogate["wheel"]["rim_thickness_mm"],
+        regression={key: surrogate[key] for key in REGRESSION},
+    )
 
 
-def save(surrogate, path):
+def save(surrogate: Json, path: Path | str) -> None:
     """Writes a surrogate. Raises InputError."""
     arrays = {key: np.asarray(surrogate[key]) for key in (*REGRESSION, "cell")}
     _write(path, arrays, {"wheel": surrogate["wheel"], "report": surrogate["report"]})
 
 
-def load(path):
+def load(path: Path | str) -> tuple[dict[str, Any], str]:
     """(surrogate, SHA-256 of its file). Raises InputError."""
     content, arrays, about = _read(path, (*REGRESSION, "cell"))
+    numbers = {}
     _check_wheel(path, about)
     for key in ("rho", "gamma", "scale", "cell"):
         if arrays[key].ndim != 0:
             raise InputError(
                 "job.archive_no_number", "{file}: '{key}' is no single number", file=path, key=key
             )
-        arrays[key] = float(arrays[key])
+        numbers[key] = float(arrays[key])
     report = about.get("report")
     surrogate = {
         **arrays,
+        **numbers,
         "wheel": about["wheel"],
         "report": report if isinstance(report, dict) else {},
     }
     return surrogate, hashlib.sha256(content).hexdigest()
 
 
-def save_database(database, path):
+def save_database(database: Json, path: Path | str) -> None:
     """Writes a database. Raises InputError."""
     about = {key: database[key] for key in ("wheel", "source", "seconds")}
     _write(path, {key: np.asarray(database[key]) for key in DATABASE}, about)
 
 
-def load_database(path):
+def load_database(path: Path | str) -> dict[str, Any]:
     """A database from its file. Raises InputError naming what is missing or does not fit."""
     _, arrays, about = _read(path, DATABASE)
     _check_wheel(path, about)
@@ -136,11 +156,16 @@ def load_database(path):
         **arrays,
         "wheel": about["wheel"],
         "source": str(about.get("source", "its own")),
-        "seconds": float(about.get("seconds", 0.0)),
+        "seconds": _number(about.get("seconds", 0.0)),
     }
 
 
-def _check_wheel(path, about):
+def _number(value: Any) -> float:
+    """A number for a person to read; NaN where the file has none."""
+    return float(value) if isinstance(value, (int, float)) else math.nan
+
+
+def _check_wheel(path: Path | str, about: Json) -> None:
     wheel = about.get("wheel")
     if not isinstance(wheel, dict) or not all(
         isinstance(wheel.get(key), (int, float)) for key in WHEEL
@@ -153,16 +178,18 @@ def _check_wheel(path, about):
         )
 
 
-def _write(path, arrays, about):
+def _write(path: Path | str, arrays: Mapping[str, Array], about: Json) -> None:
     buffer = io.BytesIO()
-    np.savez_compressed(buffer, about=np.array(json.dumps(about)), **arrays)
+    np.savez_compressed(buffer, about=np.array(json.dumps(about, allow_nan=False)), **arrays)
     try:
         write_whole(Path(path), buffer.getvalue())
     except OSError as error:
         raise cannot_be_written(path, error) from None
 
 
-def _read(path, names):
+def _read(
+    path: Path | str, names: Iterable[str]
+) -> tuple[bytes, dict[str, Floats], dict[str, Any]]:
     """(bytes, arrays by name, about) of an archive."""
     content = read_regular(path, LARGEST)
     try:

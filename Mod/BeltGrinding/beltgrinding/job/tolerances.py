@@ -1,21 +1,28 @@
 """The tolerances of a job: their check, their colours, the narrowest of them."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ..base import records
+from ..base.kinds import Json
 from ..engine import InputError
+from .settings import Inspection, Job
+from .typed import typed
 
 
-def narrowest_band(inspection):
+def narrowest_band(inspection: Inspection | Json) -> tuple[float, float]:
     """(lower, upper) of the narrowest tolerance of a job's ``inspection``, mm."""
-    bands = [inspection["tolerance_mm"]]
-    bands += [
-        zone["tolerance_mm"] for zone in inspection.get("zones", []) if zone.get("tolerance_mm")
-    ]
+    inspection = records.made(Inspection, inspection)
+    bands = [inspection.tolerance_mm]
+    bands += [zone.tolerance_mm for zone in inspection.zones or () if zone.tolerance_mm]
     return min(bands, key=lambda band: band[1] - band[0])
 
 
 NEEDED = {"=": "lay_direction", "⊥": "lay_direction", "C": "lay_centre_mm", "R": "lay_centre_mm"}
 
 
-def _check_finish(asked, where, finish):
+def _check_finish(asked: Json, where: str, finish: bool) -> None:
     """Of a zone; ``finish``: whether the job computes any."""
     if not finish:
         raise InputError(
@@ -34,7 +41,7 @@ def _check_finish(asked, where, finish):
             "{key}: a particulate lay (P) has no direction, and a belt scratches along one",
             key=where,
         )
-    needed = NEEDED.get(symbol)
+    needed = NEEDED.get(symbol) if symbol else None
     if needed is not None and needed not in asked:
         raise InputError(
             "job.lay_incomplete",
@@ -47,7 +54,7 @@ def _check_finish(asked, where, finish):
         raise InputError("job.lay_direction", "{key}.lay_direction: all of it is zero", key=where)
 
 
-def check_zones(zones, faces, finish=False):
+def check_zones(zones: Sequence[Json], faces: Sequence[int], finish: bool = False) -> None:
     """Raises InputError for tolerance zones that cannot be; ``faces``: those that are ground, numbered
     from 1, none for all; ``finish``: whether the job computes any.
     """
@@ -92,8 +99,9 @@ def check_zones(zones, faces, finish=False):
                 )
 
 
-def colour_scale(job):
+def colour_scale(job: Job | Json) -> tuple[float, float, float]:
     """(lower, upper, limit) of the job's colours, mm; the limit lies outside of the band."""
-    lower, upper = job["inspection"]["tolerance_mm"]
-    limit = max(job["inspection"]["colour_limit_mm"], 1.01 * max(abs(lower), abs(upper)))
+    job = typed(job)
+    lower, upper = job.inspection.tolerance_mm
+    limit = max(job.inspection.colour_limit_mm, 1.01 * max(abs(lower), abs(upper)))
     return lower, upper, limit

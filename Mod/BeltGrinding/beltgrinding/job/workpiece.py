@@ -1,14 +1,24 @@
 """The workpiece of a job: its design, the height field of its faces, the stock on it."""
 
+from __future__ import annotations
+
 import os
+import weakref
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import Any, NamedTuple, TypeAlias, Union
 
 import numpy as np
 
-from ..base import frames, kept
+from ..base import frames, kept, records
 from ..base.files import at_key
+from ..base.kinds import Context, Facts, Floats, Json, known
 from ..engine import InputError, core
-from . import inputs, spacing
+from . import inputs, sizes, spacing
+from .settings import Body, Design, Frame, Job, Stock
+from .typed import typed
+
+Given: TypeAlias = Union[Design, Stock, Body, Json]  # which may say where a body comes from
 
 BELOW = (
     "stock.below_design",
@@ -18,6 +28,9 @@ MESH_SUFFIXES = {".stl", ".ply", ".obj", ".off", ".3mf"}
 SHAPE_BYTES = 12  # in memory, of a byte of a B-rep's file or text, about; of a mesh's file more
 MESH_SHAPE_BYTES = 40
 SMALL = 10_000  # bytes, of what has no size to speak of
+_of_mesh: weakref.WeakKeyDictionary[
+    core.Shape, Facts
+] = weakref.WeakKeyDictionary()  # what was found out while a shape's mesh was read, Facts
 
 
 class OwnBrep(str):
@@ -25,77 +38,107 @@ class OwnBrep(str):
     text is foreign, as files are, and is read by a process of its own."""
 
 
-def read_design(design, context=None):
+class Source(NamedTuple):
+    """Where a body of a job comes from."""
+
+    file: str | None
+    brep: str | None
+    unit_mm: float | None
+
+
+def source(data: Given) -> Source:
+    """Of a job's design, stock or body of the cell."""
+    if isinstance(data, Mapping):
+        return Source(data.get("file"), data.get("brep"), data.get("unit_mm"))
+    return Source(data.file, data.brep, data.unit_mm)
+
+
+def read_design(design: Given, context: Context = None) -> core.Shape:
     """The design's core.Shape, its loose faces flipped as the job says; a mesh becomes a faceted B-rep.
     Kept for the next who reads the same. Raises InputError, Cancelled."""
     meshed = is_mesh(design)
 
-    def read():
+    def read() -> core.Shape:
         if meshed:
-            mesh = core.read_mesh(design["file"], design["unit_mm"], context=context)
-            shape = core.shape_from_mesh(mesh, context)
+            told: dict[str, Any] = {}
+            file, _, unit = source(design)
+            mesh = core.read_mesh(known(file), known(unit), context=context, report=told)
+            shape = flipped(core.shape_from_mesh(mesh, context), design)
+            _of_mesh[shape] = told["warnings"]
         else:
-            shape = read_shape(design, "design", context)
-        return kept.named(flipped(shape, design), parts())
+            shape = flipped(read_shape(design, "design", context), design)
+        return kept.named(shape, parts())
 
-    def parts():
-        return made_from(design), design.get("flip_normals"), design.get("flip_faces")
+    def parts() -> tuple[Any, ...]:
+        return made_from(design), *_flips(design)
 
     return kept.get("design", parts, read, lambda _: _shape_bytes(design))
 
 
-def is_mesh(data):
+def _flips(design: Given) -> tuple[bool, Sequence[int]]:
+    """(whether all normals are flipped, faces from 1 that are); of a design alone."""
+    if isinstance(design, Mapping):
+        return bool(design.get("flip_normals")), design.get("flip_faces") or ()
+    return (design.flip_normals, design.flip_faces) if isinstance(design, Design) else (False, ())
+
+
+def is_mesh(data: Given) -> bool:
     """Whether what a job gives as "brep" or as "file" is a mesh's file."""
-    return "file" in data and Path(data["file"]).suffix.lower() in MESH_SUFFIXES
+    file = source(data).file
+    return file is not None and Path(file).suffix.lower() in MESH_SUFFIXES
 
 
-def made_from(data):
+def made_from(data: Given) -> list[Any]:
     """All that ``read_shape`` and core.read_mesh read of what a job gives as "brep" or as "file", for ``kept``."""
-    if "brep" in data:
-        return [type(data["brep"]).__name__, data["brep"], data.get("unit_mm")]
-    return [inputs.file_digest("", data["file"]), data.get("unit_mm")]
+    file, brep, unit = source(data)
+    if brep is not None:
+        return [type(brep).__name__, brep, unit]
+    return [inputs.file_digest("", known(file)), unit]
 
 
-def _shape_bytes(data):
+def _shape_bytes(data: Given) -> float:
     """About what a core.Shape of a job's "brep" or "file" holds."""
-    if "brep" in data:
-        return SHAPE_BYTES * len(data["brep"])
+    file, brep, _ = source(data)
+    if brep is not None:
+        return SHAPE_BYTES * len(brep)
     each = MESH_SHAPE_BYTES if is_mesh(data) else SHAPE_BYTES
-    return each * os.path.getsize(data["file"])
+    return each * os.path.getsize(known(file))
 
 
-def shape_warnings(shape):
+def shape_warnings(shape: core.Shape) -> Facts:
     """What the user should know of a core.Shape, as Facts."""
-    name = kept.name(shape)
+    name, read = kept.name(shape), _of_mesh.get(shape, [])
     if name is None:
-        return shape.warnings()
-    return kept.get("warnings", lambda: name, shape.warnings, lambda _: SMALL)
+        return read + shape.warnings()
+    return read + kept.get("warnings", lambda: name, shape.warnings, lambda _: SMALL)
 
 
-def flipped(shape, design):
+def flipped(shape: core.Shape, design: Given) -> core.Shape:
     """A core.Shape with the loose faces flipped that a job's design names. Raises InputError."""
-    faces = design.get("flip_faces", [])
-    if not (faces or design.get("flip_normals")):
+    whole, faces = _flips(design)
+    if not (faces or whole):
         return shape
     try:
-        return shape.flipped(design.get("flip_normals", False), [face - 1 for face in faces])
+        return shape.flipped(whole, [face - 1 for face in faces])
     except InputError as error:
         raise at_key(error, "design.flip_faces") from None
 
 
-def read_shape(data, name, context=None):
+def read_shape(data: Given, name: str, context: Context = None) -> core.Shape:
     """core.Shape of what a job gives as "brep" or as "file". Raises InputError, Cancelled."""
-    scale = data.get("unit_mm", 1.0)
-    if "brep" not in data:
-        return core.Shape.read(data["file"], context, scale)
-    if isinstance(data["brep"], OwnBrep):
-        return core.Shape.from_brep(data["brep"], name, scale)
-    return core.Shape.read_brep(data["brep"], name, context, scale)
+    file, brep, unit = source(data)
+    scale = 1.0 if unit is None else unit
+    if brep is None:
+        return core.Shape.read(known(file), context, scale)
+    if isinstance(brep, OwnBrep):
+        return core.Shape.from_brep(brep, name, scale)
+    return core.Shape.read_brep(brep, name, context, scale)
 
 
-def check_faces(job, shape):
+def check_faces(job: Job | Json, shape: core.Shape) -> Sequence[int]:
     """The job's list of faces, from 1. Raises InputError for one that the shape lacks."""
-    faces = job["design"]["faces"]
+    job = typed(job)
+    faces = job.design.faces
     for face in faces:
         if face > shape.face_count:
             raise InputError(
@@ -108,30 +151,35 @@ def check_faces(job, shape):
     return faces
 
 
-def make_field(job, shape, warnings, context):
+def make_field(
+    job: Job | Json, shape: core.Shape, warnings: Facts, context: Context
+) -> core.HeightField:
     """The height field of the job's faces, without stock; the caller's own. Raises InputError, Cancelled."""
+    job = typed(job)
     faces = check_faces(job, shape)
-    if job["sampling"]["spacing_mm"] == 0:
-        job, _ = spacing.settled(job, shape, warnings, context)
+    if job.sampling.spacing_mm == 0:
+        job = typed(spacing.settled(records.plain(job), shape, warnings, context)[0])
     field, told = _sampled(job, shape, faces, context)
     warnings += told
     return field
 
 
-def _sampled(job, shape, faces, context):
+def _sampled(
+    job: Job, shape: core.Shape, faces: Sequence[int], context: Context
+) -> tuple[core.HeightField, Facts]:
     """(core.HeightField, the caller's own; its warnings)."""
-    sampling = job["sampling"]
+    sampling = job.sampling
     name = kept.name(shape)
 
-    def sample():
+    def sample() -> tuple[core.HeightField, Facts]:
         field, report = core.sample_faces(
             shape,
             [face - 1 for face in faces],
-            sampling["spacing_mm"],
-            sampling["depth_mm"],
+            sampling.spacing_mm,
+            sampling.depth_mm,
             context=context,
-            precision=sampling["precision_mm"],
-            edge_spacing=sampling["edge_spacing_mm"],
+            precision=sampling.precision_mm,
+            edge_spacing=sampling.edge_spacing_mm,
         )
         doubts = spacing.edge_doubts(job, field) if spacing.by_curvature(job) else []
         return field, report["warnings"] + doubts
@@ -142,33 +190,40 @@ def _sampled(job, shape, faces, context):
     return kept.get("field", parts, sample, _field_bytes, _field_copy)
 
 
-def _field_parts(job, name, faces):
-    return name, faces, job["sampling"], spacing.doubted_by(job)
+def _field_parts(job: Job, name: str | None, faces: Sequence[int]) -> tuple[Any, ...]:
+    return name, faces, job.sampling, spacing.doubted_by(job)
 
 
-def _field_bytes(found):
+def _field_bytes(found: tuple[core.HeightField, Facts]) -> int:
     return found[0].bytes
 
 
-def make_stocked_field(job, shape, warnings, context, sampled=lambda: None):
+def make_stocked_field(
+    job: Job | Json,
+    shape: core.Shape,
+    warnings: Facts,
+    context: core.RunContext,
+    sampled: Callable[[], None] = lambda: None,
+) -> core.HeightField:
     """``make_field`` with the job's stock on it; the caller's own. ``sampled()``: is called between the two.
     Raises InputError, Cancelled."""
-    stock, name = job["stock"], kept.name(shape)
-    if stock["kind"] == "allowance" or name is None or job["sampling"]["spacing_mm"] == 0:
-        field = make_field(job, shape, warnings, context.part(0.0, 0.75))
+    read = typed(job)
+    stock, name = read.stock, kept.name(shape)
+    if stock.kind == "allowance" or name is None or read.sampling.spacing_mm == 0:
+        field = make_field(read, shape, warnings, context.part(0.0, 0.75))
         sampled()
-        apply_stock(field, stock, warnings, context.part(0.75, 1.0))
+        apply_stock(field, stock, warnings, context.part(0.75, 1.0), shape)
         return field
 
-    def make():
-        told = []
-        field = make_field(job, shape, told, context.part(0.0, 0.75))
+    def make() -> tuple[core.HeightField, Facts]:
+        told: Facts = []
+        field = make_field(read, shape, told, context.part(0.0, 0.75))
         sampled()
-        apply_stock(field, stock, told, context.part(0.75, 1.0))
+        apply_stock(field, stock, told, context.part(0.75, 1.0), shape)
         return field, told
 
-    def parts():
-        return _field_parts(job, name, check_faces(job, shape)), stock, made_from(stock)
+    def parts() -> tuple[Any, ...]:
+        return _field_parts(read, name, check_faces(read, shape)), stock, made_from(stock)
 
     field, told = kept.get("stock", parts, make, _field_bytes, _field_copy)
     sampled()
@@ -176,43 +231,59 @@ def make_stocked_field(job, shape, warnings, context, sampled=lambda: None):
     return field
 
 
-def _field_copy(found):
+def _field_copy(found: tuple[core.HeightField, Facts]) -> tuple[core.HeightField, Facts]:
     """Of (core.HeightField, warnings), whose field is then the caller's own."""
     return found[0].copy(), found[1]
 
 
-def apply_stock(field, stock, warnings, context):
-    """Puts the stock on the field: where its placement has it, and thicker by its offset."""
-    placement = frame_of(stock.get("placement"), "stock.placement")
+def apply_stock(
+    field: core.HeightField,
+    stock: Stock | Json,
+    warnings: Facts,
+    context: Context,
+    shape: core.Shape | None = None,
+) -> None:
+    """Puts the stock on the field: where its placement has it, and thicker by its offset. ``shape``: the design, which a mesh
+    is compared with in size. Raises InputError, Cancelled."""
+    stock = records.made(Stock, stock)
+    placement = frame_of(stock.placement, "stock.placement")
     moved = not np.array_equal(placement, np.eye(4))
-    offset = stock["offset_mm"]
-    if stock["kind"] == "allowance":
-        report = core.apply_allowance(field, stock["allowance_mm"] + offset)
+    offset, unit = stock.offset_mm, 1.0
+    if stock.kind == "allowance":
+        report = core.apply_allowance(field, stock.allowance_mm + offset)
         added = None
         if moved:
             # As a whole: at first order its thickness changes by the shift along the normal.
             shift = field.points @ placement[:3, :3].T + placement[:3, 3] - field.points
             added = np.einsum("ij,ij->i", field.normals, shift)
     else:
-        if stock["kind"] == "mesh":
-            mesh = core.read_mesh(stock["file"], stock["unit_mm"], placement, context)
+        if stock.kind == "mesh":
+            of_mesh: dict[str, Any] = {}
+            mesh = core.read_mesh(known(stock.file), stock.unit_mm, placement, context, of_mesh)
+            unit = of_mesh["unit_mm"]
+            warnings += of_mesh["warnings"]
+            if shape is not None:
+                try:
+                    sizes.check_box(mesh.vertices, shape, unit, stock.search_above_mm)
+                except InputError as error:
+                    raise at_key(error, "stock.unit_mm") from None
         else:
             shape = read_design(stock, context)
             warnings += [
                 core.Fact("job.of_stock", "stock: {warning}", warning=text)
                 for text in shape.warnings()
             ]
-            mesh = core.triangulate(shape, stock["deflection_mm"], context)
+            mesh = core.triangulate(shape, stock.deflection_mm, context)
             if moved:
                 points = mesh.vertices @ placement[:3, :3].T + placement[:3, 3]
                 mesh = core.TriangleMesh(points.astype(np.float32), mesh.triangles)
         report = core.apply_mesh(
             field,
             mesh,
-            stock["search_above_mm"],
-            stock["search_below_mm"],
+            stock.search_above_mm,
+            stock.search_below_mm,
             context,
-            unit_mm=stock["unit_mm"] if stock["kind"] == "mesh" else 1.0,
+            unit_mm=unit,
         )
         added = np.full(field.size, offset) if offset else None
     told = report["warnings"]
@@ -222,9 +293,9 @@ def apply_stock(field, stock, warnings, context):
     warnings += told
 
 
-def frame_of(data, where):
+def frame_of(data: Frame | Json | None, where: str) -> Floats:
     """(4, 4), mm: the transform that a job gives under the key ``where``. Raises InputError."""
     try:
-        return frames.from_data(data)
+        return frames.from_data(records.plain(data))
     except InputError as error:
         raise at_key(error, where) from None

@@ -1,9 +1,11 @@
-"""What a macro and every button call; ``import beltgrinding`` offers these functions too.
+"""What a macro and every button call; ``import beltgrinding`` offers those of DOCUMENT_FUNCTIONS too.
 
 Keyword arguments set properties by name; a plain number is in FreeCAD's unit (mm, mm/s, degree), a
 text may carry its unit: ``Force="40 N"``. Every function raises InputError for what the user must
 mend, and leaves the document as it was.
 """
+
+from __future__ import annotations
 
 from . import job_object
 from .first_settings import set_up
@@ -17,6 +19,7 @@ from .inspection import (
     make_verdict,
     set_zones,
 )
+from .kinds import DocumentObject
 from .planning_runs import apply_plan, make_plan, write_plan
 from .preferences import apply_threads
 from .proxy import type_of
@@ -36,45 +39,9 @@ from .set_up import (
 from .stock_scan import lay_stock
 from .study_runs import make_study, open_study_run
 
-__all__ = [
-    "apply_plan",
-    "check_settings",
-    "compare_scan",
-    "export_job",
-    "export_program",
-    "follow_path",
-    "import_program",
-    "import_result",
-    "is_job",
-    "lay_stock",
-    "learn_scan",
-    "make_belt",
-    "make_belt_machine",
-    "make_deviation",
-    "make_figures",
-    "make_ground_mesh",
-    "make_job",
-    "make_plan",
-    "make_raster",
-    "make_section",
-    "make_stock",
-    "make_study",
-    "make_verdict",
-    "open_example",
-    "open_job",
-    "open_study_run",
-    "set_up",
-    "set_zones",
-    "simulate",
-    "store_result",
-    "wear_belt",
-    "write_plan",
-    "write_report",
-]
-
 apply_threads()  # before anything computes, whoever calls: a button or a macro
 
 
-def is_job(obj):
+def is_job(obj: DocumentObject) -> bool:
     """True for a BeltGrindingJob."""
     return type_of(obj) == job_object.BeltGrindingJob.TYPE

@@ -1,9 +1,13 @@
 """A belt in the document: what it has done, and what is left of its cut. Jobs may share one."""
 
+from __future__ import annotations
+
 import json
+from typing import Any
 
 from ..engine import InputError
 from ..job import law, law as laws
+from .kinds import DocumentObject
 from .properties import Key, Output, add_keys, add_outputs, from_job, to_job
 from .proxy import Proxy
 
@@ -24,24 +28,24 @@ class Belt(Proxy):
     TYPE = "BeltGrinding::Belt"
     VIEW = "BeltView"
 
-    def add_properties(self, obj):
+    def add_properties(self, obj: DocumentObject) -> None:
         add_keys(obj, KEYS)
         if "RemainingCut" not in obj.PropertiesList:
             add_outputs(obj, OUTPUTS)
             obj.RemainingCut = 100.0
 
-    def state(self, obj):
+    def state(self, obj: DocumentObject) -> dict[str, Any]:
         """What a job has under belt_machine.belt."""
-        data = {}
+        data: dict[str, Any] = {}
         to_job(obj, KEYS, data)
         return data["belt_machine"]["belt"]
 
-    def reset(self, obj):
+    def reset(self, obj: DocumentObject) -> None:
         """A new belt of the same kind."""
         obj.WorkDone = obj.RemovedVolume = obj.Hours = 0.0
         obj.RemainingCut, obj.Counted = 100.0, []
 
-    def count(self, obj, simulation):
+    def count(self, obj: DocumentObject, simulation: DocumentObject) -> None:
         """Adds what the belt did in a simulation. Raises InputError for one that was counted."""
         run = f"{simulation.Fingerprint} {simulation.WallTime}"
         if not simulation.BeltUse:

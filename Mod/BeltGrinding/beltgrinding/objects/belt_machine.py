@@ -1,10 +1,15 @@
 """The belt machine in the document: what presses the belt, the belt, control, the cell's frames, the robot."""
 
+from __future__ import annotations
+
+from typing import Any
+
 from ..base import schemas
 from ..engine import InputError
 from ..job.machine import FREE_BELT, PLATEN, SMALL_WHEEL, WHEEL, WHEELS, check_run
 from .belt import Belt
 from .geometry import matrix, placement_to_job
+from .kinds import DocumentObject
 from .properties import Key, add_keys, check_limits, get_value, rule, to_job
 from .proxy import Proxy, checking, type_of
 
@@ -124,7 +129,7 @@ ROBOT_FRAMES = {
 LAYERS = next(key for key in PLATEN_KEYS if key.name == "PlatenLayers")
 
 
-def layers_of(machine):
+def layers_of(machine: DocumentObject) -> list[Any]:
     """A platen's layers, as a job has them; none where what stands in the property is no such list, which ``execute`` tells."""
     try:
         return schemas.checked(get_value(machine, LAYERS), rule(LAYERS.key)[0], LAYERS.key)
@@ -132,14 +137,14 @@ def layers_of(machine):
         return []
 
 
-def half_size(machine):
+def half_size(machine: DocumentObject) -> float:
     """mm: how far what presses reaches about from the contact, for cameras and arrows; of a wheel its radius."""
     if machine.Kind in WHEELS:
         return machine.WheelRadius.Value
     return 0.5 * machine.RunLength.Value
 
 
-def across(machine):
+def across(machine: DocumentObject) -> float:
     """mm: the width of what presses."""
     return (machine.WheelWidth if machine.Kind in WHEELS else machine.RunWidth).Value
 
@@ -150,7 +155,7 @@ class BeltMachine(Proxy):
     TYPE = "BeltGrinding::BeltMachine"
     VIEW = "BeltMachineView"
 
-    def add_properties(self, obj):
+    def add_properties(self, obj: DocumentObject) -> None:
         add_keys(obj, ALL_KEYS)
         if "Belt" not in obj.PropertiesList:
             obj.addProperty(
@@ -167,7 +172,7 @@ class BeltMachine(Proxy):
                 obj.addProperty("App::PropertyPlacement", name, "Robot", text)
         self.arrange(obj)
 
-    def execute(self, obj):
+    def execute(self, obj: DocumentObject) -> None:
         """Raises InputError for a machine that cannot be; the tree shows it there."""
         with checking(obj):
             check_limits(obj, (*KIND_KEYS[obj.Kind], *KEYS))
@@ -176,12 +181,13 @@ class BeltMachine(Proxy):
                 given = self.to_job(obj)["belt_machine"]
                 check_run(schemas.checked(given, rules, "belt_machine"))
 
-    def onChanged(self, obj, name):
+    def onChanged(self, obj: DocumentObject, name: str) -> None:
         """Called by FreeCAD: shows the properties of the kind that was chosen."""
+        super().onChanged(obj, name)
         if name == KIND.name and obj.Kind in KIND_KEYS:
             self.arrange(obj)
 
-    def arrange(self, obj):
+    def arrange(self, obj: DocumentObject) -> None:
         """Hides in the property editor what the kind does not use."""
         used = {key.name for key in KIND_KEYS[obj.Kind]}
         if obj.Kind in WHEELS:
@@ -190,9 +196,9 @@ class BeltMachine(Proxy):
             if key.group in OF_KINDS and hasattr(obj, key.name):
                 obj.setEditorMode(key.name, 0 if key.name in used else 2)
 
-    def to_job(self, obj):
+    def to_job(self, obj: DocumentObject) -> dict[str, Any]:
         """The parts of a job under 'belt_machine', 'cell' and 'robot'."""
-        job = {}
+        job: dict[str, Any] = {}
         to_job(obj, (*KIND_KEYS[obj.Kind], *KEYS), job)
         if type_of(obj.Belt) == Belt.TYPE:
             job["belt_machine"]["belt"] = obj.Belt.Proxy.state(obj.Belt)
@@ -202,15 +208,15 @@ class BeltMachine(Proxy):
             job["robot"][key] = placement_to_job(getattr(obj, name))
         return job
 
-    def robot(self, obj):
+    def robot(self, obj: DocumentObject) -> dict[str, Any]:
         """The part of a job under 'robot'; of nothing else, so that a cell is drawn whatever else is wrong."""
-        job = {}
+        job: dict[str, Any] = {}
         to_job(obj, [key for key in KEYS if key.key.startswith("robot.")], job)
         for name, (key, _) in ROBOT_FRAMES.items():
             job["robot"][key] = placement_to_job(getattr(obj, name))
         return job["robot"]
 
-    def cell(self, obj):
+    def cell(self, obj: DocumentObject) -> dict[str, Any]:
         """The cell's frames as core.ToolPath takes them: 4 x 4 in mm, by name."""
         cell = {"holding": obj.Holding}
         for name, (key, _) in FRAMES.items():

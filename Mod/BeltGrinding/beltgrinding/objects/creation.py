@@ -1,10 +1,21 @@
 """How objects are added to a document: whole, or not at all."""
 
+from __future__ import annotations
+
+from types import TracebackType
+from typing import TYPE_CHECKING, Literal
+
 from .job_data import child
+from .kinds import DocumentObject, Properties
 from .properties import set_by_name
 
+if TYPE_CHECKING:
+    from .proxy import Proxy
 
-def make_child(job, proxy, name, label, properties):
+
+def make_child(
+    job: DocumentObject, proxy: type[Proxy], name: str, label: str, properties: Properties
+) -> DocumentObject:
     """The job's child of a kind, made where it is missing, with properties set."""
     found = child(job, proxy)
     if found is not None:
@@ -19,7 +30,7 @@ def make_child(job, proxy, name, label, properties):
     return found
 
 
-def called(obj, label):
+def called(obj: DocumentObject, label: str) -> DocumentObject:
     """Gives a new object the label that it has in the user's language; English ones are FreeCAD's, numbered
     where there are several."""
     if obj.Label.rstrip("0123456789") != label:
@@ -30,13 +41,18 @@ def called(obj, label):
 class removed_on_error:
     """Removes a new object from its document if the block fails."""
 
-    def __init__(self, obj):
+    def __init__(self, obj: DocumentObject) -> None:
         self.document, self.name = obj.Document, obj.Name
 
-    def __enter__(self):
+    def __enter__(self) -> removed_on_error:
         return self
 
-    def __exit__(self, kind, error, trace):
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> Literal[False]:
         if kind is not None and self.document.getObject(self.name) is not None:
             self.document.removeObject(self.name)
         return False

@@ -1,18 +1,22 @@
 """The deviation in the document: a coloured mesh with its statistics as properties."""
 
+from __future__ import annotations
+
 import hashlib
 import io
 import json
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import Mesh
 import numpy as np
 
+from ..base.kinds import Array, Floats
 from ..engine import InputError, core
 from ..job.tolerances import colour_scale
 from . import preferences
 from .fields import field_of
+from .kinds import DocumentObject, Field, Limits, MeshShape, Scale
 from .properties import Output, add_outputs
 from .proxy import Proxy
 
@@ -123,7 +127,7 @@ class Deviation(Proxy):
     TYPE = "BeltGrinding::Deviation"
     VIEW = "DeviationView"
 
-    def add_properties(self, obj):
+    def add_properties(self, obj: DocumentObject) -> None:
         if "Simulation" not in obj.PropertiesList:
             obj.addProperty("App::PropertyLink", "Simulation", "Deviation", "the result shown")
             obj.setEditorMode("Simulation", 1)
@@ -144,10 +148,10 @@ class Deviation(Proxy):
                 setattr(obj, name, value)
         add_outputs(obj, OUTPUTS)
 
-    def execute(self, obj):
+    def execute(self, obj: DocumentObject) -> None:
         self.update(obj)
 
-    def update(self, obj):
+    def update(self, obj: DocumentObject) -> None:
         """Reads the result again if it is another one or the tolerance has changed."""
         simulation, job = obj.Simulation, obj.getParentGroup()
         if simulation is None or job is None or not simulation.Fingerprint:
@@ -173,10 +177,10 @@ class Deviation(Proxy):
                 object=simulation.Label,
             )
         show(obj, field, scale, before[0] != result)
-        obj.Shown = json.dumps([result, shown])
+        obj.Shown = json.dumps([result, shown], allow_nan=False)
 
 
-def _round_up(value):
+def _round_up(value: float) -> float:
     """The next of 1, 2, 5, 10... above a value."""
     if value <= 0.0:
         return 0.001
@@ -184,7 +188,7 @@ def _round_up(value):
     return next(step * power for step in (1, 2, 5, 10) if step * power >= 0.999 * value)
 
 
-def bounded(obj, field, scale):
+def bounded(obj: DocumentObject, field: Field, scale: Scale) -> Scale:
     """``scale`` with the end of the ramps as the object's ``Bounds`` say, outside of the tolerance."""
     lower, upper, limit = scale
     widest = max(abs(lower), abs(upper))
@@ -195,7 +199,7 @@ def bounded(obj, field, scale):
     return lower, upper, max(limit, 1.01 * widest, 1e-4)
 
 
-def percentile(field, share):
+def percentile(field: Field, share: float) -> float:
     """|deviation| in mm that ``share`` percent of the area lie within; missed samples are left out."""
     found = (field.flags & core.MISSED) == 0
     height, area = np.abs(field.height[found]), field.areas[found].astype(float)
@@ -207,13 +211,13 @@ def percentile(field, share):
     return float(height[order[min(k, len(order) - 1)]])
 
 
-def scan_heights(obj, field):
+def scan_heights(obj: DocumentObject, field: Field) -> Floats:
     """(n,) what a scan's colour mode shows, mm; NaN where the scan has nothing."""
     measured = np.array(field.measured, dtype=float)
     return measured if obj.ColourBy == MEASURED else measured - field.height
 
 
-def bands_of(obj):
+def bands_of(obj: DocumentObject) -> int:
     """The steps of each ramp; 0: none."""
     return min(max(obj.Bands, 0), MOST_BANDS)
 
@@ -223,15 +227,15 @@ class _Ready(NamedTuple):
 
     field: object
     surface: str  # hash
-    mesh: object  # Mesh.Mesh; None where it is there already
-    limits: tuple
-    statistics: dict
+    mesh: MeshShape | None  # None where it is there already
+    limits: tuple[float, ...]
+    statistics: dict[str, Any]
 
 
-_ready = []  # one _Ready, or none
+_ready: list[_Ready] = []  # one _Ready, or none
 
 
-def prepare(field, tolerance, shown=""):
+def prepare(field: Field, tolerance: Limits, shown: str = "") -> None:
     """Makes the mesh of a core.HeightField and its statistics for (lower, upper) limits in mm, for the next
     ``show`` of it; in any thread. ``shown``: the hash of the surface whose mesh is there already, ``obj.MeshOf``.
     """
@@ -241,19 +245,19 @@ def prepare(field, tolerance, shown=""):
     _ready[:] = [_Ready(field, surface, mesh, tuple(tolerance), statistics)]
 
 
-def forget_prepared():
+def forget_prepared() -> None:
     """Frees what was prepared and is not shown."""
     _ready.clear()
 
 
-def _statistics(field, tolerance):
+def _statistics(field: Field, tolerance: Limits) -> dict[str, Any]:
     for one in _ready:
         if one.field is field and one.limits == tuple(tolerance):
             return one.statistics
     return core.deviation_statistics(field, *tolerance)
 
 
-def _lay_mesh(obj, field):
+def _lay_mesh(obj: DocumentObject, field: Field) -> None:
     """Gives the object the field's mesh, unless it has that already."""
     one = next((one for one in _ready if one.field is field), None)
     ply, surface = _ply(field) if one is None else (None, one.surface)
@@ -264,24 +268,24 @@ def _lay_mesh(obj, field):
     obj.MeshOf = surface
 
 
-def _ply(field):
+def _ply(field: Field) -> tuple[bytes, str]:
     """(PLY file of the ground surface, its hash)."""
     ply = core.mesh_ply(field, True)
     return ply, hashlib.sha256(ply).hexdigest()
 
 
-def _mesh(ply):
+def _mesh(ply: bytes) -> MeshShape:
     mesh = Mesh.Mesh()
     mesh.read(Stream=io.BytesIO(ply), Format="PLY")
     return mesh
 
 
-def temperature_span(obj):
+def temperature_span(obj: DocumentObject) -> float:
     """K between the ends of the temperature's colours."""
     return max(obj.GreatestTemperature - obj.StartTemperature, 1.0)
 
 
-def _show_temperatures(obj, field):
+def _show_temperatures(obj: DocumentObject, field: Field) -> None:
     stored = json.loads(getattr(obj.Simulation, "VerdictData", "") or "{}")
     heat = stored.get("verdict", {}).get("heat") if field.heat is not None else None
     obj.StartTemperature = heat["start_C"] if heat else 0.0
@@ -290,12 +294,12 @@ def _show_temperatures(obj, field):
     obj.BurntArea = 100.0 * (heat["burnt_share"] or 0.0) if heat else 0.0
 
 
-def roughness_of(field):
+def roughness_of(field: Field) -> Floats:
     """(n,) Ra of every sample, µm; NaN where it is not known."""
     return np.array(field.finish["roughness"], dtype=float)
 
 
-def _roughness_colours(obj, field):
+def _roughness_colours(obj: DocumentObject, field: Field) -> Array:
     values = roughness_of(field)
     unknown = np.isnan(values)
     colours = core.magnitude_colours(np.nan_to_num(values), field.flags, roughness_span(obj))
@@ -303,12 +307,12 @@ def _roughness_colours(obj, field):
     return colours
 
 
-def roughness_span(obj):
+def roughness_span(obj: DocumentObject) -> float:
     """µm at which the roughness' colours end."""
     return max(obj.GreatestRoughness, 1e-3)
 
 
-def _show_finish(obj, field):
+def _show_finish(obj: DocumentObject, field: Field) -> None:
     stored = json.loads(getattr(obj.Simulation, "VerdictData", "") or "{}")
     finish = stored.get("verdict", {}).get("finish") if field.finish is not None else None
     spread = (finish or {}).get("Ra_um")
@@ -319,7 +323,7 @@ def _show_finish(obj, field):
     obj.CrossedArea = -1.0 if crossed is None else 100.0 * crossed
 
 
-def show(obj, field, scale, new_mesh=True):
+def show(obj: DocumentObject, field: Field, scale: Scale, new_mesh: bool = True) -> None:
     """Shows a core.HeightField. ``scale``: lower and upper limit, end of the ramps, mm."""
     scale = bounded(obj, field, scale)
     statistics = _statistics(field, scale[:2])

@@ -1,15 +1,19 @@
 """Jobs as files: writes one, and makes the objects of one. Offered by ``api``."""
 
+from __future__ import annotations
+
 import itertools
 import json
 import os
 from pathlib import Path
+from typing import Any
 
 import FreeCAD
 import Part
 
 from ..base import schemas
 from ..base.files import cannot_be_written, write_whole
+from ..base.kinds import Json
 from ..engine import InputError
 from ..examples import blade, knife, tap, tap_belt, vane
 from ..job import load as jobs, workpiece
@@ -17,11 +21,12 @@ from ..job.poses import listed_poses
 from ..programs import given
 from . import belt as belts, belt_machine, bodies, job_data, job_inputs, robot_path, stock as stocks
 from .geometry import placement_from_job
+from .kinds import Document, DocumentObject
 from .properties import from_job
 from .set_up import import_program, make_belt, make_belt_machine, make_job, make_stock
 
 
-def export_job(job, path):
+def export_job(job: DocumentObject, path: Path | str) -> Path:
     """Writes the job as job.json, which ``beltgrind run`` grinds without FreeCAD. Meshes of the document
     (stock, bodies) are written beside it, under names that begin as its own; none takes the place of a
     file that is there.
@@ -38,13 +43,13 @@ def export_job(job, path):
                 if os.path.realpath(file.parent) == os.path.realpath(scratch):
                     file = _kept(file.read_bytes(), folder / f"{path.stem}_{file.name}")
                 holder["file"] = _relative(file, folder)
-        write_whole(path, (json.dumps(data) + "\n").encode())
+        write_whole(path, (json.dumps(data, allow_nan=False) + "\n").encode())
     except OSError as error:
         raise cannot_be_written(path, error) from None
     return path
 
 
-def _kept(data, path):
+def _kept(data: bytes, path: Path) -> Path:
     """The path of a file with these bytes: ``path``, or the next number of it that is free."""
     for number in itertools.count(2):
         if not os.path.lexists(path):
@@ -56,15 +61,15 @@ def _kept(data, path):
         path = path.with_name(f"{stem}_{number}{path.suffix}")
 
 
-def _relative(path, folder):
+def _relative(path: Path | str, folder: Path) -> str:
     path = Path(path)
     return path.name if path.parent == folder else str(path)
 
 
-def open_job(doc, path):
+def open_job(doc: Document, path: Path | str) -> DocumentObject:
     """Makes the objects of a job.json in a document; returns the job."""
     data = jobs.load(path)
-    made = []
+    made: list[DocumentObject] = []
     try:
         return _open_job(doc, data, Path(path), made)
     except Exception:
@@ -76,7 +81,7 @@ def open_job(doc, path):
 EXAMPLES = {"blade": blade, "tap": tap, "tap_belt": tap_belt, "vane": vane, "knife": knife}
 
 
-def open_example(folder, name="blade"):
+def open_example(folder: Path | str, name: str = "blade") -> DocumentObject:
     """A new document with an example, whose files are written to ``folder``; its job. ``name``: of
     ``EXAMPLES``.
     """
@@ -90,7 +95,7 @@ def open_example(folder, name="blade"):
     return open_job(FreeCAD.newDocument(name.title().replace("_", "")), EXAMPLES[name].make(folder))
 
 
-def _values(program):
+def _values(program: Json) -> Any:
     """What a job gives of its program, as ``load_program`` takes it."""
     values = program.get("values")
     if isinstance(values, str) and values:
@@ -99,7 +104,7 @@ def _values(program):
     return values or None
 
 
-def _open_job(doc, data, path, made):
+def _open_job(doc: Document, data: Json, path: Path, made: list[DocumentObject]) -> DocumentObject:
     shape = workpiece.read_design(data["design"])
     part = doc.addObject("Part::Feature", "Design")
     made.append(part)
@@ -142,7 +147,9 @@ def _open_job(doc, data, path, made):
     return job
 
 
-def _open_stock(doc, stock, data, made):
+def _open_stock(
+    doc: Document, stock: DocumentObject, data: Json, made: list[DocumentObject]
+) -> None:
     from_job(stock, stocks.KEYS, {"stock": data})
     if data["kind"] == "mesh":
         stock.File = data["file"]

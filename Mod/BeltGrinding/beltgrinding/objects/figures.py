@@ -4,12 +4,17 @@ Expressions name objects by their internal name, which no renaming changes. The 
 job, not in it: a child that reads its parent would be a circle.
 """
 
+from __future__ import annotations
+
+from collections.abc import Iterable
+
 import FreeCAD
 
 from .belt_machine import BeltMachine
 from .deviation import Deviation
 from .job_data import child
 from .job_object import BeltGrindingJob
+from .kinds import DocumentObject, Sheet
 from .simulation import Simulation, simulated
 from .stock import Stock
 from .verdict import Verdict
@@ -152,13 +157,13 @@ SECTIONS = (
 )
 
 
-def _in_words(text):
+def _in_words(text: str) -> str:
     """A text marked above, in FreeCAD's language."""
     in_language = FreeCAD.Qt.translate
     return in_language("BeltGrinding", text)
 
 
-def find(job):
+def find(job: DocumentObject) -> Sheet | None:
     """The job's sheet, or None."""
     for obj in job.Document.Objects:
         if obj.TypeId == "Spreadsheet::Sheet" and getattr(obj, MARK, None) is job:
@@ -166,7 +171,7 @@ def find(job):
     return None
 
 
-def make(job):
+def make(job: DocumentObject) -> Sheet:
     """The job's sheet, made where it is missing and filled anew with what the job now has. Cells of a
     user's own in other columns than A to C stay. Raises InputError.
     """
@@ -190,19 +195,21 @@ def make(job):
     return sheet
 
 
-def _clear(sheet):
+def _clear(sheet: Sheet) -> None:
     """Takes out what ``make`` has put in."""
     for cell in sheet.getUsedCells() if hasattr(sheet, "getUsedCells") else _used(sheet):
         if cell[0] in WIDTHS and cell[1:].isdigit():
             sheet.clear(cell)
 
 
-def _used(sheet):
+def _used(sheet: Sheet) -> list[str]:
     """Names of the cells that hold something, of FreeCADs that do not tell."""
     return [name for name in sheet.cells.Content] if hasattr(sheet, "cells") else []
 
 
-def _fill(sheet, row, heading, obj, rows):
+def _fill(
+    sheet: Sheet, row: int, heading: str, obj: DocumentObject, rows: Iterable[tuple[str, str, str]]
+) -> int:
     """Writes a section from ``row`` on; returns the next free row."""
     sheet.set(f"A{row}", _in_words(heading))
     sheet.setStyle(f"A{row}", "bold")

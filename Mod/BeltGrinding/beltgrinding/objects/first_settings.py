@@ -1,17 +1,23 @@
 """A job's stock, machine and passes, with first values chosen from the part (raster/proposal.py)."""
 
+from __future__ import annotations
+
+from typing import Any
+
+from ..base.kinds import Json
 from ..engine import InputError
 from ..raster import proposal
 from . import job_data, job_inputs, waiting
 from .belt_machine import BeltMachine
 from .job_data import child, children
+from .kinds import DocumentObject
 from .properties import rule
 from .raster_path import RasterPath, generate, proposed
 from .set_up import make_belt_machine, make_raster, make_stock
 from .stock import Stock
 
 
-def set_up(job, text=""):
+def set_up(job: DocumentObject, text: str = "") -> dict[str, Any]:
     """Gives a job what it lacks of stock, belt machine and passes, with first values from the part. Returns
     what ``propose`` gives; where no passes can be laid on the faces, dict(notes: the reason) alone, and the
     job gets stock and machine with their defaults. ``text``: what a window says meanwhile. Raises Cancelled;
@@ -36,7 +42,7 @@ def set_up(job, text=""):
     return found
 
 
-def propose(job, text=""):
+def propose(job: DocumentObject, text: str = "") -> dict[str, Any]:
     """First settings for the job's faces, stock, law and belt, as ``proposal.propose`` gives them."""
     with job_inputs.scratch_folder() as folder:
         data = job_inputs.without_programs(job, folder)
@@ -52,7 +58,7 @@ WHEEL = {
 BELT = {"ForceTravel": "force_travel_mm", "ContactSpacing": "contact_spacing_mm"}
 
 
-def values(job, found):
+def values(job: DocumentObject, found: Json) -> dict[DocumentObject, dict[str, Any]]:
     """{object: {property: value}} of a proposal."""
     return {
         job: {"Spacing": found["spacing_mm"]},
@@ -74,7 +80,7 @@ def values(job, found):
     }
 
 
-def apply(job, found, before=None):
+def apply(job: DocumentObject, found: Json, before: Json | None = None) -> None:
     """Sets a proposal's values; of those that ``before``, an earlier one, has set, only what nobody has
     changed since.
     """
@@ -90,7 +96,7 @@ def apply(job, found, before=None):
                 setattr(machine, name, rule(f"belt_machine.{key}")[1])
 
 
-def _is(now, value):
+def _is(now: Any, value: Any) -> bool:
     if isinstance(value, str) and hasattr(now, "getValueAs"):
         return abs(now.getValueAs(value.split()[1]).Value - float(value.split()[0])) < 1e-9
     if isinstance(value, tuple):

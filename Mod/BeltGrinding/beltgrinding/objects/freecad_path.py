@@ -1,14 +1,19 @@
 """FreeCAD's own paths as robot programs: ``Path::Feature`` (CAM) and ``Robot::TrajectoryObject``."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Mapping
 
 import FreeCAD
 import numpy as np
 
+from ..base.kinds import Floats
 from ..engine import InputError
 from ..programs.program import CHORD_ERROR, Motion, Program
-from ..programs.readers.tool_axis import Tracer, arc_through
+from ..programs.languages.tool_axis import Tracer, arc_through
 from .geometry import matrix
+from .kinds import DocumentObject
 
 LARGEST_TURN = 2.0  # degrees between two poses while a rotary axis turns
 LINES = {"G0": "PTP", "G00": "PTP", "G1": "LIN", "G01": "LIN"}
@@ -18,12 +23,12 @@ SILENT = ("G40", "G49", "G54", "G80", "G94", "G98", "G99", "G21", "M", "T", "S",
 TRAJECTORY = {"PTP": "PTP", "LIN": "LIN", "CIRC": "LIN"}
 
 
-def is_path(obj):
+def is_path(obj: DocumentObject) -> bool:
     """Whether ``program_of`` takes the object."""
     return hasattr(obj, "Trajectory") or hasattr(obj, "Path")
 
 
-def program_of(obj):
+def program_of(obj: DocumentObject) -> Program:
     """The Program of a path object, its lines being the numbers of commands or waypoints from 1.
 
     A CAM path's poses are contact frames in the document's coordinates (z along the milling tool,
@@ -41,7 +46,7 @@ def program_of(obj):
     )
 
 
-def _trajectory(obj):
+def _trajectory(obj: DocumentObject) -> Program:
     """Waypoints: Robot::Waypoint knows no arc's auxiliary point, and FreeCAD itself moves its CIRC
     on a line; so does this."""
     program = Program("FreeCAD trajectory", obj.Label)
@@ -66,7 +71,7 @@ def _trajectory(obj):
     return program
 
 
-def _placement(obj):
+def _placement(obj: DocumentObject) -> Floats:
     """Where a path lies in the document; Path::Feature itself knows only its own placement."""
     own = matrix(obj.Placement) if hasattr(obj, "Placement") else np.eye(4)
     group = obj.getParentGeoFeatureGroup()
@@ -77,7 +82,7 @@ class _Commands:
     """Follows the commands of a Path as FreeCAD draws them (PathSegmentWalker): A, B, C turn the
     point, and here the tool's axis as well, about the path's centre by Rz(-C) Ry(-B) Rx(-A)."""
 
-    def __init__(self, obj):
+    def __init__(self, obj: DocumentObject) -> None:
         self.label = obj.Label
         self.program = Program("FreeCAD path", obj.Label)
         self.trace = Tracer(self.program)
@@ -91,7 +96,7 @@ class _Commands:
         for number, command in enumerate(obj.Path.Commands, 1):
             self.command(number, command.Name.upper(), command.Parameters)
 
-    def command(self, number, name, words):
+    def command(self, number: int, name: str, words: Mapping[str, float]) -> None:
         if words.get("F", 0.0) > 0.0:
             self.feed = float(words["F"])
         if name in LINES or name in ARCS:
@@ -120,12 +125,12 @@ class _Commands:
             self.trace.gap(number)
             self.at[:] = math.nan
 
-    def note(self, number, key, code, text, /, **arguments):
+    def note(self, number: int, key: str, code: str, text: str, /, **arguments: object) -> None:
         if key not in self.noted:
             self.noted.add(key)
             self.program.problem(self.label, number, code, text, **arguments)
 
-    def move(self, number, name, words):
+    def move(self, number: int, name: str, words: Mapping[str, float]) -> None:
         start, before = self.at.copy(), self.angles.copy()
         for k, axis in enumerate("XYZ"):
             if axis in words:
@@ -153,7 +158,9 @@ class _Commands:
                 place, axis = self.placed(point, before + share * (self.angles - before))
                 self.trace.move(kind, place, axis, number, self.feed)
 
-    def arc(self, number, side, start, words, turning):
+    def arc(
+        self, number: int, side: float, start: Floats, words: Mapping[str, float], turning: bool
+    ) -> tuple[list[Floats], list[Floats]]:
         """(points of arcs in pairs: one on the way, the end; points of chords): a plane arc is the
         first, a helix or an arc while a rotary axis turns the second."""
         u, v, w = self.plane
@@ -186,7 +193,7 @@ class _Commands:
         points[:, w] = start[w] + t[:, 0] * (end[w] - start[w])
         return [], [*points[:-1], end]
 
-    def placed(self, point, angles):
+    def placed(self, point: Floats, angles: Floats) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Position in mm and axis, from the part to the spindle, in the document."""
         a, b, c = angles
         turn = FreeCAD.Rotation(-float(c), -float(b), -float(a))

@@ -1,14 +1,20 @@
 """Shapes and placements of document objects, as the simulator takes them."""
 
+from __future__ import annotations
+
 import hashlib
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import FreeCAD
 import numpy as np
 
 from ..base import frames
+from ..base.kinds import Floats, Json
 from ..engine import InputError, core
 from ..job.workpiece import OwnBrep
+from .kinds import DocumentObject, PartFace, PartShape, Placement
 
 GRID = 5  # points per direction and face, and per edge, that tell shapes apart
 RESOLUTION = 1e-6  # mm; below it, two shapes are the same
@@ -16,7 +22,7 @@ RESOLUTION = 1e-6  # mm; below it, two shapes are the same
 OFFSET = 0.3183
 
 
-def placed_shape(obj):
+def placed_shape(obj: DocumentObject) -> PartShape:
     """A copy of a document object's shape in the document's coordinates. Raises InputError."""
     shape = getattr(obj, "Shape", None)
     if shape is None or shape.isNull():
@@ -28,12 +34,12 @@ def placed_shape(obj):
     return shape
 
 
-def core_shape(shape):
+def core_shape(shape: PartShape) -> core.Shape:
     """core.Shape of a Part shape."""
     return core.Shape.from_brep(shape.exportBrepToString(), "design")
 
 
-def export_solid(obj, folder, name):
+def export_solid(obj: DocumentObject, folder: Path | str, name: str) -> dict[str, Any]:
     """{"brep": ...} of a Part object, {"file": ...} of a Mesh object, written to ``folder`` under
     ``name``; in the document's coordinates, mm. Raises InputError."""
     if not hasattr(obj, "Mesh"):
@@ -45,7 +51,7 @@ def export_solid(obj, folder, name):
     return {"file": str(path)}
 
 
-def geometry_digest(obj):
+def geometry_digest(obj: DocumentObject) -> str:
     """What tells the shape or mesh of an object, and its place, apart from others."""
     if hasattr(obj, "Mesh"):
         mesh = obj.Mesh
@@ -54,7 +60,7 @@ def geometry_digest(obj):
     return faces_digest(placed_shape(obj).Faces)
 
 
-def faces_digest(faces):
+def faces_digest(faces: Iterable[PartFace]) -> str:
     """Hash of what faces look like. The B-rep's text would not do: FreeCAD changes its flags and
     locations on saving and drawing.
     """
@@ -75,7 +81,7 @@ def faces_digest(faces):
     return hashlib.sha256(rounded.tobytes() + "".join(orientations).encode()).hexdigest()
 
 
-def _poles(face):
+def _poles(face: PartFace) -> list[Any]:
     try:
         surface = face.Surface
     except TypeError:  # FreeCAD has no class for it, an offset surface for one
@@ -85,17 +91,17 @@ def _poles(face):
     )
 
 
-def matrix(placement):
+def matrix(placement: Placement) -> Floats:
     """(4, 4) array of a FreeCAD.Placement, mm."""
     return np.array(placement.toMatrix().A, dtype=float).reshape(4, 4)
 
 
-def placement_to_job(placement):
+def placement_to_job(placement: Placement) -> dict[str, Any]:
     """A job's frame from a FreeCAD.Placement."""
     x, y, z, w = placement.Rotation.Q
     return {"position_mm": list(placement.Base), "quaternion_wxyz": [w, x, y, z]}
 
 
-def placement_from_job(frame):
+def placement_from_job(frame: Json | None) -> Placement:
     """FreeCAD.Placement of a job's frame (None: identity). Raises ValueError."""
     return FreeCAD.Placement(FreeCAD.Matrix(*frames.from_data(frame).ravel().tolist()))

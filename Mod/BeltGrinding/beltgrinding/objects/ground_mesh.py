@@ -1,15 +1,20 @@
 """The ground part as one closed mesh in the document."""
 
+from __future__ import annotations
+
 import io
 import json
+from typing import Any
 
 import FreeCAD
 import Mesh
 
+from ..base.kinds import Context
 from ..engine import InputError, core
 from ..inspection import closed_mesh
 from ..job import workpiece
 from ..job.tolerances import colour_scale
+from .kinds import DocumentObject
 from .properties import Output, add_outputs
 from .proxy import Proxy
 
@@ -35,7 +40,7 @@ class GroundMesh(Proxy):
     TYPE = "BeltGrinding::GroundMesh"
     VIEW = "GroundMeshView"
 
-    def add_properties(self, obj):
+    def add_properties(self, obj: DocumentObject) -> None:
         if "Simulation" not in obj.PropertiesList:
             text = "the result that is meshed"
             obj.addProperty("App::PropertyLink", "Simulation", "Mesh", text)
@@ -46,10 +51,10 @@ class GroundMesh(Proxy):
             obj.Deflection = closed_mesh.DEFLECTION
         add_outputs(obj, OUTPUTS)
 
-    def execute(self, obj):
+    def execute(self, obj: DocumentObject) -> None:
         self.update(obj)
 
-    def update(self, obj):
+    def update(self, obj: DocumentObject) -> None:
         """Says whether the mesh is of the result that is there."""
         simulation = obj.Simulation
         if simulation is not None and obj.Shown:
@@ -58,12 +63,14 @@ class GroundMesh(Proxy):
                 obj.OutOfDate = stale
 
 
-def _shown(obj):
+def _shown(obj: DocumentObject) -> str:
     simulation = obj.Simulation
-    return json.dumps([simulation.Fingerprint, simulation.WallTime, obj.Deflection.Value])
+    return json.dumps(
+        [simulation.Fingerprint, simulation.WallTime, obj.Deflection.Value], allow_nan=False
+    )
 
 
-def make(obj):
+def make(obj: DocumentObject) -> None:
     """Makes the mesh from the object's simulation. Raises InputError where that is out of date."""
     from . import job_data, job_inputs, waiting
 
@@ -92,7 +99,7 @@ def make(obj):
         shape = workpiece.read_design(data["design"])
     scale, deflection = colour_scale({"inspection": job_data.inspection(job)}), obj.Deflection.Value
 
-    def work(_):
+    def work(_: Context) -> tuple[Any, ...]:
         mesh = core.ground_mesh(shape, field, True, deflection)
         made = Mesh.Mesh()
         made.read(Stream=io.BytesIO(mesh.ply()), Format="PLY")

@@ -1,11 +1,14 @@
 """FreeCAD's File > Open and Import for robot programs."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import FreeCAD
 
 from ..engine import Cancelled
 from . import api
+from .kinds import Document
 
 # Suffixes that FreeCAD's spreadsheets and CAM read too: with the workbench open it asks who shall.
 SHARED_TYPE = (
@@ -14,7 +17,7 @@ SHARED_TYPE = (
 )
 
 
-def open(path):
+def open(path: Path | str) -> Document | None:
     """Opens a robot program as a new document; None where a person cancels it."""
     document = FreeCAD.newDocument(Path(path).stem)
     try:
@@ -29,7 +32,7 @@ def open(path):
     return document
 
 
-def insert(path, name):
+def insert(path: Path | str, name: str) -> None:
     """Imports a robot program into the document ``name``: into its job, if it has just one."""
     document = FreeCAD.getDocument(name)
     jobs = [obj for obj in document.Objects if api.is_job(obj)]

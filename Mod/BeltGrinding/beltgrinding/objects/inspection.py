@@ -2,8 +2,15 @@
 Offered by ``api``.
 """
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
 import FreeCAD
 
+from ..base.kinds import Json
 from ..engine import InputError
 from . import (
     deviation as deviations,
@@ -16,17 +23,22 @@ from . import (
 from .creation import called, removed_on_error
 from .fields import field_of
 from .job_data import child
+from .kinds import DocumentObject, Point
 from .properties import set_by_name
 from .simulation import simulated
 
+if TYPE_CHECKING:
+    from ..calibration.learning import Learned
+    from .proxy import Proxy
 
-def make_deviation(job):
+
+def make_deviation(job: DocumentObject) -> DocumentObject:
     """Adds the coloured deviation of the job's simulation, or returns the one that is there."""
     label = FreeCAD.Qt.translate("BeltGrinding", "Deviation")
     return _follower(job, deviations.Deviation, "Mesh::FeaturePython", "Deviation", label)
 
 
-def make_verdict(job):
+def make_verdict(job: DocumentObject) -> DocumentObject:
     """Adds the verdict on the job's simulation, or returns the one that is there. It follows the
     result and the job's tolerances.
     """
@@ -34,7 +46,9 @@ def make_verdict(job):
     return _follower(job, verdicts.Verdict, "App::FeaturePython", "Verdict", label)
 
 
-def _follower(job, proxy, kind, name, label):
+def _follower(
+    job: DocumentObject, proxy: type[Proxy], kind: str, name: str, label: str
+) -> DocumentObject:
     """The job's child that shows its result and follows it, made where it is missing."""
     simulation = simulated(job)
     found = child(job, proxy)
@@ -50,7 +64,7 @@ def _follower(job, proxy, kind, name, label):
     return found
 
 
-def set_zones(job, zones):
+def set_zones(job: DocumentObject, zones: Sequence[Json]) -> None:
     """Gives a job tolerance zones: a list of dicts as the key inspection.zones of a job file, faces
     numbered from 1 (docs/verification.md).
     """
@@ -58,7 +72,14 @@ def set_zones(job, zones):
     job.Document.recompute()
 
 
-def make_section(job, point=None, normal=None, start=None, end=None, **properties):
+def make_section(
+    job: DocumentObject,
+    point: Point | None = None,
+    normal: Point | None = None,
+    start: Point | None = None,
+    end: Point | None = None,
+    **properties: Any,
+) -> DocumentObject:
     """Adds a cross-section of the job's simulation: by the plane through ``point`` with ``normal``, or
     along the surface from ``start`` to ``end`` (mm, the document's frame). Without any of them: across
     the longest side of the surface, in its middle. Raises InputError where there is nothing to cut.
@@ -94,7 +115,7 @@ def make_section(job, point=None, normal=None, start=None, end=None, **propertie
     return found
 
 
-def make_ground_mesh(job, **properties):
+def make_ground_mesh(job: DocumentObject, **properties: Any) -> DocumentObject:
     """Adds the ground part as one closed Mesh object, or makes the one that is there anew. Raises
     InputError where the result is missing or out of date.
     """
@@ -116,7 +137,7 @@ def make_ground_mesh(job, **properties):
     return found
 
 
-def compare_scan(job, path, **options):
+def compare_scan(job: DocumentObject, path: Path | str, **options: Any) -> dict[str, Any]:
     """Aligns a scan of the ground part and keeps its heights with the Simulation; returns the figures.
     ``options``: of ``scan.compare`` (unit_mm, start, pairs, datum_faces, fixed, ...).
     """
@@ -127,7 +148,7 @@ def compare_scan(job, path, **options):
     return figures
 
 
-def learn_scan(job, **options):
+def learn_scan(job: DocumentObject, **options: Any) -> Learned:
     """Corrects the job's law and the wear of its belt by the scan that ``compare_scan`` took, for the next part; returns
     ``calibration.learning.Learned``. ``options``: scatter, drift. The result is out of date then.
     """

@@ -1,16 +1,25 @@
 """The settings of a job in the document, its children, and the faces that it grinds."""
 
+from __future__ import annotations
+
 import json
+from collections.abc import ItemsView, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import Part
 
 from ..base import schemas
+from ..base.kinds import Json
 from ..engine import InputError
 from ..job import load as loads, tolerances
 from .geometry import placed_shape
+from .kinds import DocumentObject, Links, PartShape
 from .properties import Key, rule, to_job
 from .proxy import type_of
+
+if TYPE_CHECKING:
+    from .proxy import Proxy
 
 KEYS = (
     Key("FlipNormals", "Bool", "Design", "design.flip_normals"),
@@ -63,17 +72,17 @@ KEYS = (
 )
 
 
-def children(job, proxy):
+def children(job: DocumentObject, proxy: type[Proxy]) -> list[DocumentObject]:
     """The job's children of a proxy class, in the tree's order."""
     return [obj for obj in job.Group if type_of(obj) == proxy.TYPE]
 
 
-def child(job, proxy):
+def child(job: DocumentObject, proxy: type[Proxy]) -> DocumentObject | None:
     """The job's first child of a proxy class, or None."""
     return next(iter(children(job, proxy)), None)
 
 
-def required(job, proxy, what):
+def required(job: DocumentObject, proxy: type[Proxy], what: str) -> DocumentObject:
     """The job's child of a proxy class. Raises InputError."""
     found = child(job, proxy)
     if found is None:
@@ -83,26 +92,26 @@ def required(job, proxy, what):
     return found
 
 
-def inspection(job):
+def inspection(job: DocumentObject) -> dict[str, Any]:
     """The part of a job under 'inspection'."""
-    data = {}
+    data: dict[str, Any] = {}
     to_job(job, KEYS, data)
     return data["inspection"]
 
 
-def zones(job):
+def zones(job: DocumentObject) -> list[dict[str, Any]]:
     """The tolerance zones of a job, as its key inspection.zones has them."""
     return inspection(job)["zones"]
 
 
-def set_zones(job, found):
+def set_zones(job: DocumentObject, found: Sequence[Json]) -> None:
     """Gives a job tolerance zones. Raises InputError, and leaves the old ones, for wrong ones."""
     found = schemas.checked(list(found), rule("inspection.zones")[0], "zones")
     tolerances.check_zones(found, design(job)[1], bool(job.Finish))
-    job.Zones = json.dumps(found) if found else ""
+    job.Zones = json.dumps(found, allow_nan=False) if found else ""
 
 
-def finish_model(path):
+def finish_model(path: Path | str) -> dict[str, Any]:
     """A job's ``finish.model`` of the file that ``beltgrind calibrate-finish`` wrote. Raises InputError that names the
     file.
     """
@@ -120,7 +129,7 @@ def finish_model(path):
     return found
 
 
-def design(job):
+def design(job: DocumentObject) -> tuple[PartShape, list[int]]:
     """(shape, numbers of its faces from 1) in the document's coordinates. Raises InputError.
 
     Several objects become one compound, whose faces are numbered through.
@@ -128,7 +137,7 @@ def design(job):
     return shape_of(job.DesignFaces, job.Label)
 
 
-def shape_of(links, label):
+def shape_of(links: Links, label: str) -> tuple[PartShape, list[int]]:
     """(shape, numbers of its faces from 1) of a list of (object, face names), as ``design`` gives
     them; ``label`` stands for its owner. Raises InputError.
     """
@@ -154,14 +163,14 @@ def shape_of(links, label):
     return (shapes[0] if len(shapes) == 1 else Part.Compound(shapes)), sorted(numbers)
 
 
-def face_numbers(job, obj, subs):
+def face_numbers(job: DocumentObject, obj: DocumentObject, subs: Sequence[str]) -> list[int]:
     """Numbers from 1, as ``design`` has them, of faces of one of the job's objects; none of another
     object. Raises InputError.
     """
     return _numbers_in(job.DesignFaces, job.Label, obj, subs)
 
 
-def flipped_faces(job, links=None):
+def flipped_faces(job: DocumentObject, links: Links | None = None) -> list[int]:
     """Numbers from 1 of the faces that the job flips, as ``shape_of(links)`` has them (default: as
     ``design``). Raises InputError.
     """
@@ -171,13 +180,13 @@ def flipped_faces(job, links=None):
     return sorted(numbers)
 
 
-def flips(job, links=None):
+def flips(job: DocumentObject, links: Links | None = None) -> dict[str, list[int]]:
     """The key design.flip_faces of a job; nothing where there are none."""
     numbers = flipped_faces(job, links)
     return {"flip_faces": numbers} if numbers else {}
 
 
-def _numbers_in(links, label, obj, subs):
+def _numbers_in(links: Links, label: str, obj: DocumentObject, subs: Sequence[str]) -> list[int]:
     offset = 0
     for one, _ in _by_object(links):
         count = len(one.Shape.Faces)
@@ -187,7 +196,7 @@ def _numbers_in(links, label, obj, subs):
     return []
 
 
-def face_name(job, index):
+def face_name(job: DocumentObject, index: int) -> str:
     """Object.FaceN of the face that ``design`` numbers ``index`` + 1, '' if the job no longer has
     it."""
     for obj, _ in _by_object(job.DesignFaces):
@@ -198,14 +207,16 @@ def face_name(job, index):
     return ""
 
 
-def _by_object(links):
-    merged = {}
+def _by_object(links: Links) -> ItemsView[DocumentObject, list[str]]:
+    merged: dict[DocumentObject, list[str]] = {}
     for obj, subs in links:
         merged.setdefault(obj, []).extend([subs] if isinstance(subs, str) else subs)
     return merged.items()
 
 
-def _face_numbers(label, obj, subs, count):
+def _face_numbers(
+    label: str, obj: DocumentObject, subs: Sequence[str], count: int
+) -> Sequence[int]:
     names = [sub.rpartition(".")[2] for sub in subs]
     if not any(names):
         return range(1, count + 1)

@@ -1,36 +1,44 @@
 """All that a job's result depends on: as plain data, as a fingerprint, as paths of the wheel."""
 
+from __future__ import annotations
+
 import hashlib
 import json
 import tempfile
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ..base import schemas
+from ..base.kinds import Json
 from ..engine import InputError, core
 from ..job import engine_input, load as jobs
 from ..job.poses import list_poses
 from ..job.workpiece import OwnBrep
 from . import bodies
 from .belt_machine import BeltMachine
+from .damage import check_job
 from .geometry import faces_digest
 from .job_data import KEYS, child, children, design, flips, required
+from .kinds import DocumentObject
 from .program_values import no_path
 from .properties import to_job
 from .robot_path import RobotPath
 from .stock import Stock
 
 
-def without_geometry(job):
+def without_geometry(job: DocumentObject) -> dict[str, Any]:
     """The job's settings, without shapes, meshes and poses."""
-    data = {"schema": 1}
+    check_job(job)
+    data: dict[str, Any] = {"schema": 1}
     to_job(job, KEYS, data)
     data["design"].update(flips(job))
     data.update(required(job, BeltMachine, "belt machine").Proxy.to_job(child(job, BeltMachine)))
     return data
 
 
-def belt_machine(job):
+def belt_machine(job: DocumentObject) -> dict[str, Any]:
     """The part of a job under 'belt_machine', with its defaults. Raises InputError."""
     machine = required(job, BeltMachine, "belt machine")
     given = machine.Proxy.to_job(child(job, BeltMachine))["belt_machine"]
@@ -38,7 +46,7 @@ def belt_machine(job):
     return schemas.checked(given, rule, "belt_machine")
 
 
-def wear(job):
+def wear(job: DocumentObject) -> dict[str, Any]:
     """A job's ``law`` and ``belt_machine``, validated: what it takes to tell how far a belt is worn. Raises InputError."""
     rules, data = schemas.schema("job")["properties"], without_geometry(job)
     return {
@@ -47,7 +55,7 @@ def wear(job):
     }
 
 
-def without_programs(job, folder):
+def without_programs(job: DocumentObject, folder: Path | str) -> dict[str, Any]:
     """The job as validated plain data, as ``to_data`` gives it, before it has paths. Raises InputError."""
     data = without_geometry(job)
     shape, data["design"]["faces"] = design(job)
@@ -59,7 +67,7 @@ def without_programs(job, folder):
     return jobs.validate(data, folder)
 
 
-def _paths(job):
+def _paths(job: DocumentObject) -> list[DocumentObject]:
     paths = children(job, RobotPath)
     if not paths:
         raise InputError(
@@ -68,7 +76,7 @@ def _paths(job):
     return paths
 
 
-def _overrides(path):
+def _overrides(path: DocumentObject) -> dict[str, float]:
     """A program's keys that replace its own feeds and forces."""
     keys = {}
     if path.ForceOverride.Value > 0:
@@ -78,7 +86,7 @@ def _overrides(path):
     return keys
 
 
-def fingerprint(job):
+def fingerprint(job: DocumentObject) -> str:
     """Hash of all that the simulation's result depends on; not of the tolerance, nor of what the
     belt has done since.
     """
@@ -95,10 +103,12 @@ def fingerprint(job):
     data["programs"] = [
         {**_overrides(path), "digest": path.Proxy.digest(path)} for path in _paths(job)
     ]
-    return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()
+    return hashlib.sha256(json.dumps(data, sort_keys=True, allow_nan=False).encode()).hexdigest()
 
 
-def to_data(job, folder, meshes=None):
+def to_data(
+    job: DocumentObject, folder: Path | str, meshes: Path | str | None = None
+) -> dict[str, Any]:
     """The whole job as validated plain data for a file in ``folder``; meshes of the document are written
     to the folder ``meshes``, by default there.
 
@@ -133,7 +143,7 @@ def to_data(job, folder, meshes=None):
     return data
 
 
-def inputs(data):
+def inputs(data: Json) -> dict[str, Any]:
     """What of a job's plain data the result depends on: no tolerance, no names and places of files."""
     data = {key: value for key, value in data.items() if key != "inspection"}
     data["stock"] = _without_file(data["stock"])
@@ -142,14 +152,14 @@ def inputs(data):
     return data
 
 
-def _without_file(data):
+def _without_file(data: Json) -> dict[str, Any]:
     return {key: value for key, value in data.items() if key != "file"}
 
 
-def tool_paths(job):
+def tool_paths(job: DocumentObject) -> list[core.ToolPath]:
     """core.ToolPath of every program, one after the other as they are run. Raises InputError."""
     data = without_geometry(job)
-    machine = child(job, BeltMachine)
+    machine: DocumentObject = child(job, BeltMachine)
     cell = machine.Proxy.cell(machine)
     paths = []
     for path in _paths(job):
@@ -164,6 +174,6 @@ def tool_paths(job):
     return paths
 
 
-def scratch_folder():
+def scratch_folder() -> tempfile.TemporaryDirectory[str]:
     """A folder for a mesh stock, removed when the object dies."""
     return tempfile.TemporaryDirectory(prefix="beltgrinding-")

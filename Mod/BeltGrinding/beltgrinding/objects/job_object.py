@@ -1,5 +1,7 @@
 """The job in the document: a group that holds the settings and everything that belongs to it."""
 
+from __future__ import annotations
+
 from ..engine import InputError
 from ..job import tolerances
 from . import report_data
@@ -7,6 +9,7 @@ from .deviation import Deviation
 from .ground_mesh import GroundMesh
 from .job_data import KEYS, child, children, design, inspection, zones
 from .job_inputs import fingerprint
+from .kinds import DocumentObject
 from .properties import add_keys, check_limits
 from .proxy import Proxy
 from .section import Section
@@ -20,7 +23,7 @@ class BeltGrindingJob(Proxy):
     TYPE = "BeltGrinding::Job"
     VIEW = "JobView"
 
-    def add_properties(self, obj):
+    def add_properties(self, obj: DocumentObject) -> None:
         if "DesignFaces" not in obj.PropertiesList:
             obj.addProperty(
                 "App::PropertyLinkSubListGlobal", "DesignFaces", "Design", "the faces to be ground"
@@ -30,7 +33,7 @@ class BeltGrindingJob(Proxy):
             obj.addProperty("App::PropertyLinkSubListGlobal", "FlipFaces", "Design", text)
         add_keys(obj, KEYS)
 
-    def onDocumentRestored(self, obj):
+    def onDocumentRestored(self, obj: DocumentObject) -> None:
         super().onDocumentRestored(obj)
         # A job that was copied without its members claims those of the job it is a copy of, and FreeCAD
         # lets none be in two groups.
@@ -38,14 +41,15 @@ class BeltGrindingJob(Proxy):
         if len(own) < len(obj.Group):
             obj.Group = own
 
-    def onChanged(self, obj, name):
+    def onChanged(self, obj: DocumentObject, name: str) -> None:
         """Passes lie on the outside of the faces; the job depends on its paths, not they on it."""
+        super().onChanged(obj, name)
         if name in ("FlipFaces", "FlipNormals") and "Restore" not in obj.State:
             for path in obj.Group:
                 if "PassCount" in path.PropertiesList:  # a RasterPath, whose module knows this one
                     path.touch()
 
-    def execute(self, obj):
+    def execute(self, obj: DocumentObject) -> None:
         """Marks the result out of date or up to date, and recolours it; never simulates. Raises
         InputError for settings that cannot be, so that the tree shows where the mistake is.
         """
@@ -85,7 +89,7 @@ class BeltGrindingJob(Proxy):
         tolerances.check_zones(zones(obj), design(obj)[1], bool(obj.Finish))
 
 
-def _can_be_judged(obj):
+def _can_be_judged(obj: DocumentObject) -> bool:
     """Whether the zones of a job can be: none that call for what nothing can be compared with."""
     try:
         tolerances.check_zones(zones(obj), (), bool(obj.Finish))

@@ -1,5 +1,7 @@
 """A mesh of the document as the part of a job: a shape of flat faces in its place."""
 
+from __future__ import annotations
+
 import tempfile
 
 import Part
@@ -7,11 +9,12 @@ import Part
 from ..engine import InputError
 from ..job.workpiece import read_design
 from .geometry import export_solid
+from .kinds import DocumentObject
 
 MOST_FACETS = 20_000  # of a shape that FreeCAD still handles well: each is a face
 
 
-def faces_of(mesh):
+def faces_of(mesh: DocumentObject) -> DocumentObject:
     """Adds a Part object with the surface of a Mesh object (FreeCAD's Mesh::Feature) to its document and
     returns it: flat faces, triangles in one plane joined. Raises InputError."""
     count = mesh.Mesh.CountFacets

@@ -1,13 +1,22 @@
 """A scan of the ground part beside a Simulation's prediction."""
 
-import json
-from types import SimpleNamespace
+from __future__ import annotations
 
+import json
+from pathlib import Path
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+from ..base.kinds import Floats, Json
 from ..calibration import learning, part_scan
 from ..engine import InputError, core
 from ..scan import comparison as scan
 from . import job_data, job_inputs, result_files
+from .kinds import DocumentObject
 from .properties import Output, add_outputs, from_job
+
+if TYPE_CHECKING:
+    from ..scan.kinds import Ground
 
 OUTPUTS = (
     Output("ScanFile", "String", "Scan", "the scan of the ground part that was compared"),
@@ -20,7 +29,7 @@ OUTPUTS = (
 )
 
 
-def prepare(simulation, job):
+def prepare(simulation: DocumentObject, job: DocumentObject) -> SimpleNamespace:
     """What ``scan.compare`` takes for a result, from the document. Raises InputError."""
     if simulation.OutOfDate or job_inputs.fingerprint(job) != simulation.Fingerprint:
         raise InputError(
@@ -37,9 +46,9 @@ def prepare(simulation, job):
     return SimpleNamespace(field=simulation.Proxy.field(simulation), job=data)
 
 
-def store(simulation, result, figures):
+def store(simulation: DocumentObject, result: Ground, figures: Json) -> None:
     """Keeps what ``scan.compare`` gave in the Simulation object."""
-    kept = result_files.sound(simulation, "HeightField")
+    kept: Any = result_files.sound(simulation, "HeightField")
     attributes = core.HeightField.from_hdf5(kept)[1]
     result_files.store(
         simulation, {"HeightField": lambda file: result.field.hdf5_into(file, attributes)}
@@ -55,7 +64,7 @@ def store(simulation, result, figures):
     simulation.ScanFigures = json.dumps(figures, allow_nan=False)
 
 
-def forget(simulation):
+def forget(simulation: DocumentObject) -> None:
     """Another result: what was measured belongs to the old one."""
     if getattr(simulation, "ScanFigures", ""):
         simulation.ScanFile = simulation.ScanFigures = ""
@@ -64,7 +73,9 @@ def forget(simulation):
         simulation.DifferenceMean = simulation.DifferenceRms = 0.0
 
 
-def compare(simulation, job, path, **options):
+def compare(
+    simulation: DocumentObject, job: DocumentObject, path: Path | str, **options: Any
+) -> dict[str, Any]:
     """``scan.compare`` on the document; returns its figures."""
     result = prepare(simulation, job)
     figures = scan.compare(result, path, **options)
@@ -72,19 +83,19 @@ def compare(simulation, job, path, **options):
     return figures
 
 
-def to_learn(simulation, job):
+def to_learn(simulation: DocumentObject, job: DocumentObject) -> tuple[dict[str, Any], Floats]:
     """(job as data, measured heights (samples,)) of the scan that was compared, as ``learning.learn`` takes them. Raises
     InputError where there is none."""
-    result = prepare(simulation, job)
+    result: Any = prepare(simulation, job)
     return result.job, part_scan.measured_heights(result)
 
 
-def take(job, learned):
+def take(job: DocumentObject, learned: learning.Learned) -> None:
     """Puts what was learned into the job's law."""
     from_job(job, job_data.KEYS, {"law": learned.law})
 
 
-def learn(simulation, job, **options):
+def learn(simulation: DocumentObject, job: DocumentObject, **options: Any) -> learning.Learned:
     """``learning.learn`` from the scan that was compared, into the job's law; returns what was learned."""
     data, measured = to_learn(simulation, job)
     learned = learning.learn(data, measured, **options)

@@ -1,19 +1,25 @@
 """A plan in the document: its settings, what it found, and feeds and forces that wait to be applied."""
 
+from __future__ import annotations
+
 import hashlib
 import json
 import os
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ..base.files import cannot_be_written, write_whole
+from ..base.kinds import Array, Context, Json
 from ..engine import InputError
 from ..cell.tool_path import tool_path
 from ..planning import apply, grinding, pictures, rounds as plans
 from ..programs.patch.patch import patch
 from . import job_inputs, result_files
 from .job_data import children, inspection
+from .kinds import DocumentObject
 from .properties import Key, Output, add_keys, add_outputs, from_job, to_job
 from .proxy import Proxy
 from .raster_path import KEYS as PASSES, RasterPath, settings_of, take
@@ -82,7 +88,7 @@ class Plan(Proxy):
     TYPE = "BeltGrinding::Plan"
     VIEW = "PlanView"
 
-    def add_properties(self, obj):
+    def add_properties(self, obj: DocumentObject) -> None:
         add_keys(obj, KEYS)
         if "LayPasses" not in obj.PropertiesList:
             text = (
@@ -95,10 +101,10 @@ class Plan(Proxy):
                 obj.addProperty("App::PropertyFileIncluded", name, "Plan", text)
                 obj.setEditorMode(name, 2)
 
-    def execute(self, obj):
+    def execute(self, obj: DocumentObject) -> None:
         self.update(obj)
 
-    def update(self, obj):
+    def update(self, obj: DocumentObject) -> None:
         """Marks it as out of date, or as applied."""
         job = obj.getParentGroup()
         if job is None or not obj.Fingerprint:
@@ -114,34 +120,34 @@ class Plan(Proxy):
         if obj.OutOfDate != stale:
             obj.OutOfDate = stale
 
-    def settings(self, obj):
+    def settings(self, obj: DocumentObject) -> dict[str, Any]:
         """As Resources/schema/plan.schema.json has them."""
-        data = {}
+        data: dict[str, Any] = {}
         to_job(obj, KEYS, data)
         return data["plan"]
 
-    def data(self, obj):
+    def data(self, obj: DocumentObject) -> dict[str, Any] | None:
         """The figures as ``planning.summary`` gives them; None if there are none yet."""
         return json.loads(obj.Data) if obj.Data else None
 
 
-def fingerprint(obj, job):
+def fingerprint(obj: DocumentObject, job: DocumentObject) -> str:
     """Hash of all that a plan depends on."""
     data = [job_inputs.fingerprint(job), inspection(job), obj.Proxy.settings(obj), obj.LayPasses]
-    return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()
+    return hashlib.sha256(json.dumps(data, sort_keys=True, allow_nan=False).encode()).hexdigest()
 
 
-def paths_of(job):
+def paths_of(job: DocumentObject) -> list[DocumentObject]:
     """The job's paths, in the order in which they are ground."""
     return children(job, RobotPath)
 
 
-def sources(job):
+def sources(job: DocumentObject) -> list[str | None]:
     """Of each path the file that it was read from, or None; as ``planning.Commands`` takes them."""
     return [path.Source or None for path in paths_of(job)]
 
 
-def passes_of(job):
+def passes_of(job: DocumentObject) -> DocumentObject:
     """The raster path of a job that has no other path; it is the one that is laid anew. Raises InputError."""
     paths = paths_of(job)
     if len(paths) != 1 or not isinstance(paths[0].Proxy, RasterPath):
@@ -157,13 +163,19 @@ def passes_of(job):
 class Work:
     """What is planned of a job, collected here and now; ``find`` plans it, in any thread. Raises InputError."""
 
-    def __init__(self, obj, job):
+    def __init__(self, obj: DocumentObject, job: DocumentObject) -> None:
         self.settings = plans.validate(obj.Proxy.settings(obj))
         self.sources = sources(job)
         self.raster = settings_of(passes_of(job)) if obj.LayPasses else None
         self.planned = fingerprint(obj, job)
 
-    def find(self, data, context=None, told=None, words=None):
+    def find(
+        self,
+        data: Json,
+        context: Context = None,
+        told: Callable[[dict[str, Any]], object] | None = None,
+        words: Mapping[str, str] | None = None,
+    ) -> Found:
         """A ``Found`` for a job's data. Raises InputError, Cancelled."""
         if self.raster is None:
             plan = plans.plan(data, self.settings, context, told, self.sources)
@@ -176,14 +188,21 @@ class Found:
     """A plan with what the document keeps of it; made in any thread. ``words``: as ``pictures.WORDS``; ``ground``: a
     ``grinding.Ground``, where the passes were laid anew."""
 
-    def __init__(self, plan, planned, ground=None, words=None, context=None):
+    def __init__(
+        self,
+        plan: plans.Plan,
+        planned: str,
+        ground: grinding.Ground | None = None,
+        words: Mapping[str, str] | None = None,
+        context: Context = None,
+    ) -> None:
         self.plan, self.planned, self.ground = plan, planned, ground
         drawn = pictures.draw(plan, context)
         whole = pictures.composed(drawn, plan.why["shares"], words)
         self.pictures = result_files.Written({"Picture": whole, "Strip": pictures.strip(drawn)})
 
 
-def store(obj, job, found):
+def store(obj: DocumentObject, job: DocumentObject, found: Found) -> None:
     """Puts a ``Found`` into a Plan object."""
     plan = found.plan
     obj.Fingerprint = (
@@ -197,7 +216,7 @@ def store(obj, job, found):
     obj.InTolerance = 100.0 * after["in_tolerance"]
     obj.ProcessTimeBefore, obj.ProcessTime = before["process_time_s"], after["process_time_s"]
     tried = {} if found.ground is None else {"tried": found.ground.tried}
-    obj.Data = json.dumps({**summary, **tried})
+    obj.Data = json.dumps({**summary, **tried}, allow_nan=False)
     obj.Rates = [
         f"{'coarse: ' if one.get('resolution') == 'coarse' else ''}"
         f"{100.0 * one['in_tolerance']:.1f} %, rms {one['rms_mm']:.3f} mm, {one['process_time_s']:.1f} s"
@@ -211,7 +230,7 @@ def store(obj, job, found):
     obj.Paths = [path.Name for path in paths_of(job)]
     obj.PathOf = commands.of_program.tolist()
     obj.Along = _along(plan)
-    obj.Raster = "" if found.ground is None else json.dumps(found.ground.settings)
+    obj.Raster = "" if found.ground is None else json.dumps(found.ground.settings, allow_nan=False)
     obj.Rapid = tuple(bool(value) for value in commands.rapid)
     new = np.where(commands.rapid, commands.feeds, plan.new[commands.group])
     factor = np.where(commands.rapid, 1.0, plan.factors[commands.group])
@@ -220,7 +239,8 @@ def store(obj, job, found):
     given = np.concatenate([one["forces"] for one in commands.arrays])
     obj.Kept = tuple(bool(value) for value in (given < 0) & (factor == 1.0))
     obj.Changes = json.dumps(
-        [apply.changes(plan, k) if source else [] for k, source in enumerate(commands.sources)]
+        [apply.changes(plan, k) if source else [] for k, source in enumerate(commands.sources)],
+        allow_nan=False,
     )
     points, triangles, states = _left(plan)
     obj.LeftPoints = [tuple(point) for point in points.tolist()]
@@ -231,7 +251,7 @@ def store(obj, job, found):
     obj.Applied = obj.OutOfDate = False
 
 
-def _along(plan):
+def _along(plan: plans.Plan) -> list[float]:
     """(motions,) mm that the contact goes, through all programs."""
     lengths = []
     for number in range(len(plan.job["programs"])):
@@ -240,7 +260,7 @@ def _along(plan):
     return np.cumsum(np.concatenate(lengths)).tolist()
 
 
-def _left(plan):
+def _left(plan: plans.Plan) -> tuple[Array, Array, Array]:
     """(points (n, 3) mm, triangles (m, 3), states (n,)): what stays out of tolerance, on the ground surface."""
     field, states = plan.after.field, plan.why["state"]
     triangles = np.asarray(field.triangles, dtype=int)
@@ -252,7 +272,7 @@ def _left(plan):
     return points, numbers.reshape(-1, 3), states[used]
 
 
-def put_in(obj, ground=None):
+def put_in(obj: DocumentObject, ground: grinding.Ground | None = None) -> None:
     """Gives the job's paths the planned feeds and forces, and its raster path the passes they are for. ``ground``: the
     ``grinding.Ground``, where it is there still; else they are laid once more. Raises InputError; then nothing is
     changed."""
@@ -284,10 +304,10 @@ def put_in(obj, ground=None):
     obj.Proxy.update(obj)
 
 
-def _lay(path, obj, ground):
+def _lay(path: DocumentObject, obj: DocumentObject, ground: grinding.Ground | None) -> None:
     settings = json.loads(obj.Raster)
     if ground is None:
-        laid = {}
+        laid: dict[str, Any] = {}
         to_job(path, PASSES, laid)
         from_job(path, PASSES, {"raster": settings})
         path.recompute()
@@ -304,7 +324,7 @@ def _lay(path, obj, ground):
     path.Proposed = False
 
 
-def write_programs(obj, folder):
+def write_programs(obj: DocumentObject, folder: Path | str) -> tuple[list[Path], list[str]]:
     """Writes the job's program files with the planned feeds and forces into ``folder``; nothing else of them changes.
 
     Returns (paths of the files, labels of the paths that have none). Raises InputError, and writes none, where a
@@ -312,7 +332,8 @@ def write_programs(obj, folder):
     """
     if not obj.Fingerprint:
         raise InputError("planning.none_yet", "{object}: nothing is planned yet", object=obj.Label)
-    todo, without = [], []
+    todo: list[tuple[str, Any, Path]] = []
+    without: list[str] = []
     for name, changes in zip(obj.Paths, json.loads(obj.Changes)):
         path = obj.Document.getObject(name)
         if path is None or not path.Source:
@@ -331,7 +352,7 @@ def write_programs(obj, folder):
     return [output for *_, output in todo], without
 
 
-def _write_program(source, changes, output):
+def _write_program(source: str, changes: Sequence[Any], output: Path) -> None:
     try:
         if changes:
             patch(source, changes, output)
@@ -341,7 +362,7 @@ def _write_program(source, changes, output):
         raise cannot_be_written(output, error) from None
 
 
-def _check_program(path, output, others):
+def _check_program(path: DocumentObject, output: Path, others: Sequence[Path]) -> None:
     if path.Values:
         raise InputError(
             "planning.values_in_document",

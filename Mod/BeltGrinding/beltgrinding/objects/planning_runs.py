@@ -1,17 +1,28 @@
 """Plans a job's feeds here and now, and applies what was found. Offered by ``api``."""
 
+from __future__ import annotations
+
 from contextlib import nullcontext
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import FreeCAD
 
+from ..base.kinds import Context
 from ..engine import InputError
 from . import job_inputs, plan as planned, runs
 from .creation import make_child, removed_on_error
 from .job_data import child
+from .kinds import DocumentObject
+
+if TYPE_CHECKING:
+    from ..planning.grinding import Ground
+    from ..simulation.result import Result
 
 
-def make_plan(job, compute=True, context=None, **properties):
+def make_plan(
+    job: DocumentObject, compute: bool = True, context: Context = None, **properties: Any
+) -> DocumentObject:
     """Plans the feeds (and, where ``ForceMin`` or ``ForceMax`` is set, the forces) with which the job keeps its
     tolerance, with ``LayPasses`` the passes, too, and keeps them in its Plan object, which it returns; ``apply_plan``
     puts them into the paths.
@@ -29,7 +40,9 @@ def make_plan(job, compute=True, context=None, **properties):
     return obj
 
 
-def apply_plan(plan, result=None, ground=None):
+def apply_plan(
+    plan: DocumentObject, result: Result | None = None, ground: Ground | None = None
+) -> DocumentObject:
     """Gives the paths of a Plan's job the planned feeds and forces, in place of their own and of one feed or force for
     all; where it lays passes, these, too. ``result``: the Result of the planned job, which becomes the job's; without it
     the job's result goes out of date. ``ground``: as ``plan.put_in`` takes it. Raises InputError; then nothing is
@@ -45,7 +58,7 @@ def apply_plan(plan, result=None, ground=None):
     return plan
 
 
-def write_plan(plan, folder):
+def write_plan(plan: DocumentObject, folder: Path | str) -> tuple[list[Path], list[str]]:
     """Writes the programs' files of a Plan's job with the planned feeds and forces into ``folder``; nothing else of
     them changes. Returns (paths written, labels of paths that were not read from a file). Raises InputError.
     """

@@ -3,11 +3,14 @@
 A preference that is not set has the job schema's default, or the program's own.
 """
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import FreeCAD
 
 from ..engine import InputError, core
+from .kinds import ParameterGroup
 from .properties import rule
 
 GROUP = "User parameter:BaseApp/Preferences/Mod/BeltGrinding"
@@ -38,23 +41,23 @@ UNITS = (
 )
 
 
-def parameters():
+def parameters() -> ParameterGroup:
     """FreeCAD's parameter group."""
     return FreeCAD.ParamGet(GROUP)
 
 
-def job_default(parameter):
+def job_default(parameter: str) -> float:
     """Value in mm that a new job gets, by the parameter's name."""
     key = next(key for name, _, key in JOB_DEFAULTS if name == parameter)
     return parameters().GetFloat(parameter, float(rule(key)[1]))
 
 
-def job_defaults():
+def job_defaults() -> dict[str, float]:
     """Properties of a new job by name, mm."""
     return {name: job_default(parameter) for parameter, name, _ in JOB_DEFAULTS}
 
 
-def standard_colours():
+def standard_colours() -> tuple[int, ...]:
     """The core's colours in, above and below the tolerance, 0xRRGGBBAA: in the ramps' middles."""
     middle = 0.5 * (LIMIT + TOLERANCE)
     return tuple(
@@ -62,7 +65,7 @@ def standard_colours():
     )
 
 
-def colours():
+def colours() -> tuple[int, ...] | None:
     """(in, above, below the tolerance) as 0xRRGGBBAA, or None for the standard ones."""
     standard = standard_colours()
     chosen = tuple(
@@ -71,19 +74,19 @@ def colours():
     return None if chosen == standard else chosen
 
 
-def deviation_unit():
+def deviation_unit() -> DeviationUnit:
     """The DeviationUnit that deviations are told in."""
     symbol = parameters().GetString("DeviationUnit", UNITS[0].symbol)
     return next((unit for unit in UNITS if unit.symbol == symbol), UNITS[0])
 
 
-def length_text(value, more=0, sign="+"):
+def length_text(value: float, more: int = 0, sign: str = "+") -> str:
     """A deviation in mm as a number with its unit; ``more``: decimals beyond the usual."""
     unit = deviation_unit()
     return f"{value / unit.size:{sign}.{unit.decimals + more}f} {unit.symbol}"
 
 
-def apply_threads():
+def apply_threads() -> int:
     """Tells the core how many threads it may use; 0: all. Returns the number in use."""
     try:
         core.set_threads(parameters().GetInt("Threads", 0))

@@ -1,15 +1,22 @@
 """Properties that mirror keys of a job: name, unit type, default and text come from the schema."""
 
+from __future__ import annotations
+
 import copy
 import json
 import math
+from collections.abc import Iterable
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ..base import schemas
+from ..base.messages import reason
+from ..base.kinds import Json
 from ..base.schema_errors import hint
 from ..engine import InputError
 from ..job.load import schema
+from . import damage
+from .kinds import DocumentObject, Properties
 from .proxy import type_of
 
 # FreeCAD's unit of a property type, in the job's unit: a force is kept in mm kg/s2, 1/1000 N, a
@@ -35,7 +42,7 @@ class Key(NamedTuple):
     factor: float = 1.0  # FreeCAD's value of the job's 1
 
     @property
-    def scale(self):
+    def scale(self) -> float:
         return self.factor * FACTOR.get(self.kind, 1.0)
 
 
@@ -53,7 +60,7 @@ class Output(NamedTuple):
 
 
 @lru_cache(maxsize=None)
-def _schema():
+def _schema() -> dict[str, Any]:
     """The job's schema, and under 'raster', 'plan' and 'study' those of a raster path's settings, a plan's and a
     study."""
     found = schema()
@@ -62,8 +69,9 @@ def _schema():
     return found
 
 
-def rule(key):
+def rule(key: str) -> tuple[dict[str, Any], Any]:
     """The schema's rule for a dotted key, and its default."""
+    default: Any
     node, default = _schema(), None
     for part in key.split("."):
         if part.isdigit():
@@ -77,7 +85,7 @@ def rule(key):
     return node, default
 
 
-def add_keys(obj, keys):
+def add_keys(obj: DocumentObject, keys: Iterable[Key]) -> None:
     """Adds what ``obj`` lacks, with the schema's defaults."""
     for key in keys:
         _keys[type_of(obj), key.name] = key
@@ -94,12 +102,12 @@ def add_keys(obj, keys):
             set_value(obj, key, default)
 
 
-def _add(obj, key):
+def _add(obj: DocumentObject, key: Key) -> None:
     kind, found = STORED_AS.get(key.kind, key.kind), rule(key.key)[0]
     obj.addProperty(f"App::Property{kind}", key.name, key.group, found["description"])
 
 
-def _keep_up(obj, key):
+def _keep_up(obj: DocumentObject, key: Key) -> None:
     """Makes the property of an older file what it would be in a new one."""
     _widen(obj, key)
     if key.kind != "Float":
@@ -116,7 +124,7 @@ def _keep_up(obj, key):
         obj.purgeTouched()
 
 
-def _unbind(obj, key, value):
+def _unbind(obj: DocumentObject, key: Key, value: Any) -> None:
     """Sets a Precision, and lets it take any number, which FreeCAD forgets with its file: what is
     beyond the schema's limits is then told, not set to the limit without a word."""
     default = rule(key.key)[1] or 1.0
@@ -124,16 +132,20 @@ def _unbind(obj, key, value):
     setattr(obj, key.name, (value, -UNBOUND, UNBOUND, step))
 
 
-def _widen(obj, key):
+def _widen(obj: DocumentObject, key: Key) -> None:
     """Gives an enumeration of an older file the choices that have come since."""
     if key.kind == "Enumeration":
         choices, value = rule(key.key)[0]["enum"], getattr(obj, key.name)
         if obj.getEnumerationsOfProperty(key.name) != choices:
             setattr(obj, key.name, choices)
-            setattr(obj, key.name, value)
+            if value in choices:
+                setattr(obj, key.name, value)
+            else:  # damaged: no version had it
+                setattr(obj, key.name, rule(key.key)[1] or choices[0])
+                damage.keep(obj, [key.name])
 
 
-def add_outputs(obj, outputs):
+def add_outputs(obj: DocumentObject, outputs: Iterable[Output]) -> None:
     """Adds results: read-only, and setting them does not touch the object."""
     for output in outputs:
         if output.name in obj.PropertiesList:
@@ -143,7 +155,7 @@ def add_outputs(obj, outputs):
         obj.setEditorMode(output.name, 2 if output.hidden else 1)
 
 
-def limits(obj, name):
+def limits(obj: DocumentObject, name: str) -> tuple[float | None, float | None, bool]:
     """(lowest, highest, whether the lowest itself is out) of a property in FreeCAD's unit; None where
     the schema sets no limit, or the property is none of a job's numbers.
     """
@@ -170,14 +182,14 @@ UNITS = {  # what a key ends with: the unit
 }
 
 
-def unit_of(obj, name):
+def unit_of(obj: DocumentObject, name: str) -> str:
     """The unit of a job's key that a property mirrors; '' where it is none or has none."""
     key = _keys.get((type_of(obj), name))
     found = () if key is None else (unit for end, unit in UNITS.items() if key.key.endswith(end))
     return next(iter(found), "")
 
 
-def check_limits(obj, keys):
+def check_limits(obj: DocumentObject, keys: Iterable[Key]) -> None:
     """Raises InputError for the first property that lies outside of the schema's limits."""
     for key in keys:
         low, high, open_low = limits(obj, key.name)
@@ -207,7 +219,7 @@ def check_limits(obj, keys):
             )
 
 
-def get_value(obj, key):
+def get_value(obj: DocumentObject, key: Key) -> Any:
     """The property in the job's unit."""
     value = getattr(obj, key.name)
     if key.kind in AS_IS:
@@ -222,7 +234,7 @@ def get_value(obj, key):
     return float(f"{value:.15g}")  # 0.05 stays 0.05 on its way through FreeCAD's units
 
 
-def _parsed(obj, key, text):
+def _parsed(obj: DocumentObject, key: Key, text: str) -> Any:
     try:
         return json.loads(text)
     except ValueError as error:
@@ -235,10 +247,10 @@ def _parsed(obj, key, text):
         ) from None
 
 
-def set_value(obj, key, value):
+def set_value(obj: DocumentObject, key: Key, value: Any) -> None:
     """Sets the property from a value in the job's unit."""
     if key.kind == "JSON":
-        value = json.dumps(value) if value else ""
+        value = json.dumps(value, allow_nan=False) if value else ""
     elif key.kind == "Vector":
         value = tuple(value)
     elif key.kind == "VectorList":
@@ -248,11 +260,11 @@ def set_value(obj, key, value):
     setattr(obj, key.name, value)
 
 
-def to_job(obj, keys, job):
+def to_job(obj: DocumentObject, keys: Iterable[Key], job: dict[str, Any]) -> None:
     """Puts the properties into the nested dict ``job``."""
     for key in keys:
         *path, last = key.key.split(".")
-        node = job
+        node: Any = job
         for i, part in enumerate(path):
             following = [*path, last][i + 1]
             node = node.setdefault(part, [None, None] if following.isdigit() else {})
@@ -261,10 +273,10 @@ def to_job(obj, keys, job):
             node[int(last) if last.isdigit() else last] = value
 
 
-def from_job(obj, keys, job):
+def from_job(obj: DocumentObject, keys: Iterable[Key], job: Json) -> None:
     """Sets the properties for which the nested dict ``job`` has a value."""
     for key in keys:
-        node = job
+        node: Any = job
         for part in key.key.split("."):
             if part.isdigit():
                 node = node[int(part)]
@@ -276,7 +288,7 @@ def from_job(obj, keys, job):
             set_value(obj, key, node)
 
 
-def set_by_name(obj, values):
+def set_by_name(obj: DocumentObject, values: Properties) -> None:
     """Sets properties from a macro's keyword arguments; a unit may be given: "0.5 mm".
 
     Raises InputError naming the property that does not exist or does not take the value.
@@ -294,12 +306,11 @@ def set_by_name(obj, values):
         try:
             setattr(obj, name, value)
         except Exception as error:  # FreeCAD raises TypeError, ValueError and its own
-            reason = str(error) or type(error).__name__
             raise InputError(
                 "objects.value_refused",
                 "{object}.{key} does not take {value}: {reason}",
                 object=obj.Label,
                 key=name,
                 value=repr(value),
-                reason=reason,
+                reason=reason(error),
             ) from None

@@ -1,11 +1,16 @@
 """A robot path that is computed: passes side by side on faces, laid anew when an input changes."""
 
+from __future__ import annotations
+
 import hashlib
 import json
+from pathlib import Path
+from typing import Any
 
 import FreeCAD
 import numpy as np
 
+from ..base.kinds import Array, Json
 from ..engine import InputError, core
 from ..job import load as jobs, machine as machines
 from ..job.workpiece import OwnBrep
@@ -15,6 +20,7 @@ from . import bodies, job_data, job_inputs, job_object, stored_facts, waiting
 from .belt_machine import BeltMachine
 from .fields import field_of
 from .geometry import faces_digest
+from .kinds import DocumentObject
 from .properties import Key, Output, add_keys, add_outputs, from_job, to_job
 from .proxy import type_of
 from .robot_path import RobotPath, set_arrays
@@ -92,7 +98,7 @@ class RasterPath(RobotPath):
 
     VIEW = "RasterPathView"
 
-    def add_properties(self, obj):
+    def add_properties(self, obj: DocumentObject) -> None:
         super().add_properties(obj)
         if "Faces" not in obj.PropertiesList:
             obj.addProperty(
@@ -122,7 +128,7 @@ class RasterPath(RobotPath):
         for name in ("Source", "SourceObject"):
             obj.setEditorMode(name, 2)
 
-    def execute(self, obj):
+    def execute(self, obj: DocumentObject) -> None:
         """Lays the passes anew if an input has changed; the last ones stay where that fails."""
         try:
             generate(obj)
@@ -130,7 +136,7 @@ class RasterPath(RobotPath):
             super().execute(obj)
 
 
-def generate(obj):
+def generate(obj: DocumentObject) -> None:
     """Lays the passes of a raster path if what they come from has changed; for the way ``auto``, the best one is put
     in its place. Raises InputError, Cancelled."""
     job, settings, digest = _inputs(obj)
@@ -143,7 +149,7 @@ def generate(obj):
         _lay(obj, _with_geometry(obj, job, folder), settings, digest)
 
 
-def _with_geometry(obj, job, folder):
+def _with_geometry(obj: DocumentObject, job: dict[str, Any], folder: Path | str) -> dict[str, Any]:
     """The job validated, with what ``_inputs`` leaves out; meshes are written to ``folder``."""
     job["design"]["brep"] = OwnBrep(job["design"]["brep"].exportBrepToString())
     job["cell"]["bodies"] = bodies.to_job(obj.Machine, folder)
@@ -153,7 +159,7 @@ def _with_geometry(obj, job, folder):
     return jobs.validate(job)
 
 
-def _lay(obj, job, settings, digest):
+def _lay(obj: DocumentObject, job: Json, settings: Json, digest: str) -> None:
     if settings.get("along") == "auto":
         text = FreeCAD.Qt.translate("BeltGrinding", "Comparing ways of the passes")
         found = waiting.wait(lambda context: raster.raster(job, settings, context), text)
@@ -173,10 +179,11 @@ def _lay(obj, job, settings, digest):
     _take(obj, found, digest)
 
 
-def settings_of(obj):
+def settings_of(obj: DocumentObject) -> dict[str, Any]:
     """The settings of a raster path as ``raster.raster`` takes them, with its faces as the job numbers them. Raises
     InputError."""
-    job, settings = obj.getParentGroup(), {}
+    settings: dict[str, Any] = {}
+    job = obj.getParentGroup()
     to_job(obj, KEYS, settings)
     settings = settings["raster"]
     settings["region_points"] = [list(point) for point in obj.RegionPoints]
@@ -185,13 +192,13 @@ def settings_of(obj):
     return settings
 
 
-def take(obj, settings, found):
+def take(obj: DocumentObject, settings: Json, found: Json) -> None:
     """Gives a raster path other settings, and the passes that ``raster.raster`` has laid by them."""
     from_job(obj, KEYS, {"raster": settings})
     _take(obj, found, _inputs(obj)[2])
 
 
-def _take(obj, found, digest):
+def _take(obj: DocumentObject, found: Json, digest: str) -> None:
     set_arrays(obj, found)
     obj.Language = "raster"
     obj.PassCount = len(found["passes"])
@@ -213,7 +220,7 @@ def _take(obj, found, digest):
     obj.Inputs = digest
 
 
-def _left(places):
+def _left(places: Json) -> tuple[Array, Array, Array]:
     """(points (n, 3), triangles (m, 3), states (n,)) of ``reachable.look``'s places that no pass touches: triangles
     with two such corners at least."""
     states = places["state"]
@@ -223,7 +230,7 @@ def _left(places):
     return places["points"][used], numbers.reshape(-1, 3), states[used]
 
 
-def _inputs(obj):
+def _inputs(obj: DocumentObject) -> tuple[dict[str, Any], dict[str, Any], str]:
     """(job with the shape for its B-rep, settings, hash of both)."""
     if type_of(obj.Machine) != BeltMachine.TYPE:
         raise InputError(
@@ -231,7 +238,8 @@ def _inputs(obj):
             "{object} has no belt machine; add one to the job",
             object=obj.Label,
         )
-    group, data = obj.getParentGroup(), {"schema": 1}
+    data: dict[str, Any] = {"schema": 1}
+    group = obj.getParentGroup()
     if type_of(group) == job_object.BeltGrindingJob.TYPE:
         to_job(group, job_data.KEYS, data)
         data = {key: data[key] for key in ("schema", "design", "law")}
@@ -243,7 +251,7 @@ def _inputs(obj):
     if type_of(group) == job_object.BeltGrindingJob.TYPE:
         data["design"].update(job_data.flips(group, obj.Faces))
     data["programs"] = [{"poses": []}]
-    settings = {}
+    settings: dict[str, Any] = {}
     to_job(obj, KEYS, settings)
     settings = settings["raster"]
     settings["region_points"] = [list(point) for point in getattr(obj, "RegionPoints", [])]
@@ -255,12 +263,12 @@ def _inputs(obj):
     more = [placed] if placed else []
     if stock is not None:
         more.append([stock.Proxy.settings(stock), stock.Proxy.digest(stock)])
-    text = json.dumps([data, told, digest, *more], sort_keys=True)
+    text = json.dumps([data, told, digest, *more], sort_keys=True, allow_nan=False)
     data["design"]["brep"] = shape
     return data, settings, hashlib.sha256(text.encode()).hexdigest()
 
 
-def _stock(obj):
+def _stock(obj: DocumentObject) -> DocumentObject | None:
     """The job's stock, where passes depend on it: under position control, and where something goes with the wheel that
     must keep off it. Else None."""
     machine = obj.Machine
@@ -275,12 +283,12 @@ def _stock(obj):
     return job_data.child(group, Stock)
 
 
-def to_what_is_left(obj):
+def to_what_is_left(obj: DocumentObject) -> None:
     """Restricts a raster path to where the last result of its job is above the tolerance. Raises InputError."""
     from .simulation import Simulation
 
     job = obj.getParentGroup()
-    simulation = job_data.child(job, Simulation)
+    simulation: DocumentObject = job_data.child(job, Simulation)
     field = None if simulation is None else field_of(simulation)
     if field is None:
         raise InputError("raster.no_result", "there is no result yet: simulate first")
@@ -288,7 +296,7 @@ def to_what_is_left(obj):
     set_region(obj, region.of_field(field, data, where=simulation.Label)[0])
 
 
-def to_what_others_leave(obj):
+def to_what_others_leave(obj: DocumentObject) -> None:
     """Restricts a raster path to where the wheels of all other raster paths on its faces, whichever job they are of, do
     not get to or have no pass. Raises InputError."""
     chosen = {(part.Name, name) for part, names in obj.Faces for name in names}
@@ -301,7 +309,7 @@ def to_what_others_leave(obj):
     ]
     if not others:
         raise InputError("raster.no_others", "no other raster path lies on these faces")
-    left = None
+    left: set[Any] | None = None
     for other in others:
         mine = {tuple(point) for point in other.LeftPoints}
         left = mine if left is None else left & mine
@@ -310,17 +318,17 @@ def to_what_others_leave(obj):
     set_region(obj, sorted(left))
 
 
-def set_region(obj, points):
+def set_region(obj: DocumentObject, points: Any) -> None:
     """Restricts a raster path to the surroundings of points (n, 3) mm; to none: everywhere."""
     obj.RegionPoints = [tuple(point) for point in np.asarray(points, dtype=float).tolist()]
 
 
-def proposed(path):
+def proposed(path: DocumentObject) -> bool:
     """Whether a raster path is a first proposal that nobody has looked at; older documents have none."""
     return getattr(path, "Proposed", False)
 
 
-def replace_proposed(job):
+def replace_proposed(job: DocumentObject) -> list[str]:
     """Removes the passes that were only proposed, for a program of the user's own; their labels."""
     gone = [path for path in job_data.children(job, RasterPath) if proposed(path)]
     labels = [path.Label for path in gone]

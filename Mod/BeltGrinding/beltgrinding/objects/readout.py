@@ -1,9 +1,16 @@
 """What a Deviation says at one place: the sample there, its verdict, its face."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 
+from ..base.kinds import Json
 from ..engine import InputError, core
 from .job_data import face_name
+from .kinds import DocumentObject, Point
 from .simulation import is_coarse
 
 REACH = 2.0  # spacings from the nearest sample; farther away is beside the field
@@ -13,11 +20,12 @@ IN_TOLERANCE, ABOVE, BELOW, MISSED = "in tolerance", "too much left", "cut too d
 class Reader:
     """Reads a Deviation's height field. Raises InputError where the result is not there."""
 
-    def __init__(self, obj):
+    def __init__(self, obj: DocumentObject) -> None:
         self.obj = obj
-        self.shown = self.field = None
+        self.shown: tuple[Any, ...] | None = None
+        self.field: Any = None  # the core.HeightField, once it is read
 
-    def update(self):
+    def update(self) -> None:
         """Loads the field of another result."""
         simulation = self.obj.Simulation
         shown = None if simulation is None else (simulation.Fingerprint, simulation.WallTime)
@@ -33,7 +41,7 @@ class Reader:
             heights = self.field.height[:, None]
             self.tops = self.field.points + heights * self.field.rays
 
-    def at(self, point):
+    def at(self, point: Point) -> dict[str, Any] | None:
         """The reading of the sample nearest to ``point`` (x, y, z in mm, work frame) on the ground
         surface; None more than two spacings away from every sample."""
         self.update()
@@ -43,7 +51,7 @@ class Reader:
             return None
         return self.sample(index)
 
-    def sample(self, index):
+    def sample(self, index: int) -> dict[str, Any]:
         """The reading of sample ``index``, a dict: sample, deviation (mm; None where no stock was
         met), verdict, removed and stock (mm, along the normal), uncertainty (1 sd in mm, None if not
         known), coarse (it is a coarse run's), segment (its lower and upper end along the normal, mm), face ("Object.FaceN"), point
@@ -63,7 +71,7 @@ class Reader:
             "coarse": obj.Simulation is not None and is_coarse(obj.Simulation),
             "deviation": None if missed else height,
             "verdict": verdict,
-            "removed": stock - height,
+            "removed": max(stock - height, 0.0),
             "stock": stock,
             "uncertainty": float(field.height_sd[index]) if len(field.height_sd) else None,
             "segment": (-field.depth, height),
@@ -74,7 +82,7 @@ class Reader:
         }
 
 
-def make_marker(obj, reading, lines):
+def make_marker(obj: DocumentObject, reading: Json, lines: Sequence[str]) -> DocumentObject:
     """Leaves a reading of Deviation ``obj`` in the document: an App::AnnotationLabel with the text
     ``lines`` at its place. Returns it."""
     import FreeCAD

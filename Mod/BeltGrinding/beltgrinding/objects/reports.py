@@ -1,6 +1,9 @@
 """What a macro calls to tell others of a job's result: report, figures."""
 
+from __future__ import annotations
+
 import json
+from pathlib import Path
 
 import FreeCAD
 
@@ -8,16 +11,23 @@ from ..engine import InputError
 from ..reporting import report as reporting
 from ..simulation.result import Result
 from . import figures, job_inputs, report_data
+from .kinds import DocumentObject, Sheet
 from .simulation import simulated
 from .verdict import limits_changed, verdict_of
 
 
-def make_figures(job):
+def make_figures(job: DocumentObject) -> Sheet:
     """A spreadsheet of the job's figures, live; filled anew where there is one already."""
     return figures.make(job)
 
 
-def write_report(job, output, pdf=None, language="en", title=None):
+def write_report(
+    job: DocumentObject,
+    output: Path | str,
+    pdf: Path | str | None = None,
+    language: str = "en",
+    title: str | None = None,
+) -> Path:
     """Writes the report of the job's result as one HTML file, and as PDF; returns the HTML's path. See
     ``beltgrinding.report``.
     """
@@ -26,7 +36,7 @@ def write_report(job, output, pdf=None, language="en", title=None):
         return reporting.report(result, output, pdf, language, title or name, notes=notes)
 
 
-def result_to_report(job, folder):
+def result_to_report(job: DocumentObject, folder: Path | str) -> tuple[Result, str, list[str]]:
     """(``Result``, title, notes) of the job's stored result, for ``reporting.report`` in any thread. A
     mesh stock is written to ``folder``. Raises InputError.
     """

@@ -1,27 +1,37 @@
 """A robot's program in the document: poses that are the truth, and a Path that is drawn."""
 
+from __future__ import annotations
+
 import hashlib
 import json
 import os
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import FreeCAD
 import numpy as np
 import Path
 
 from ..base import frames
+from ..base.kinds import Array, Context, Floats, Json
 from ..base.stopping import stoppable
 from ..engine import InputError, core
 from ..job.poses import DEFAULT_FEED
 from ..programs.program import Motion
-from ..programs.readers.roll import RULES, lay
+from ..programs.languages.roll import RULES, lay
+from ..programs.problems import ordered
 from ..programs.registry import read_program, told_problems
 from ..programs.writers.frames import words_of_cell
 from ..programs.writers.writer import write_program
 from . import freecad_path, program_values, stored_facts
 from .geometry import matrix
+from .kinds import Document, DocumentObject
 from .properties import Output, add_outputs, set_by_name
 from .proxy import Proxy
 from .waiting import wait
+
+if TYPE_CHECKING:
+    from ..programs.program import Program
 
 OUTPUTS = (
     Output("Language", "String", "Program", "language of the source"),
@@ -80,8 +90,8 @@ class RobotPath(Proxy):
     TYPE = "BeltGrinding::RobotPath"
     VIEW = "RobotPathView"
 
-    def add_properties(self, obj):
-        def add(kind, name, group, text):
+    def add_properties(self, obj: DocumentObject) -> None:
+        def add(kind: str, name: str, group: str, text: str) -> bool:
             if name in obj.PropertiesList:
                 return False
             obj.addProperty(f"App::Property{kind}", name, group, text)
@@ -117,11 +127,12 @@ class RobotPath(Proxy):
                 obj.setEditorMode(name, 2)
         add_outputs(obj, OUTPUTS)
 
-    def onChanged(self, obj, name):
+    def onChanged(self, obj: DocumentObject, name: str) -> None:
+        super().onChanged(obj, name)
         if name in ("Poses", "Feeds", "Forces", "Rapid", "Lines", "Zones"):
             self._arrays = None
 
-    def arrays(self, obj):
+    def arrays(self, obj: DocumentObject) -> dict[str, Array]:
         """dict(frames, feeds, forces, rapid, lines, zones) as core.ToolPath takes them, no overrides."""
         if getattr(self, "_arrays", None) is None:
             count = len(obj.Poses)
@@ -143,12 +154,12 @@ class RobotPath(Proxy):
             )
         return self._arrays
 
-    def gaps(self, obj):
+    def gaps(self, obj: DocumentObject) -> Array:
         """(n,) int: the line from which on motions are left out before each pose, 0: none."""
         count = len(obj.Poses)
         return np.array(obj.Gaps if len(obj.Gaps) == count else [0] * count, dtype=int)
 
-    def digest(self, obj):
+    def digest(self, obj: DocumentObject) -> str:
         """Hash of the poses and what belongs to them."""
         hashed = hashlib.sha256()
         for name, array in self.arrays(obj).items():
@@ -156,17 +167,17 @@ class RobotPath(Proxy):
                 hashed.update(np.ascontiguousarray(array).tobytes())
         return hashed.hexdigest()
 
-    def contacts(self, obj):
+    def contacts(self, obj: DocumentObject) -> Floats:
         """(n, 3) mm: where the wheel touches the part at the poses, in the part's coordinates."""
         if len(self.arrays(obj)["frames"]) < 2:
             return np.zeros((0, 3))
         return self._tool_path(obj, self.arrays(obj)["feeds"]).work_from_contact()[:, :3, 3]
 
-    def _tool_path(self, obj, feeds):
+    def _tool_path(self, obj: DocumentObject, feeds: Floats) -> core.ToolPath:
         cell = obj.Machine.Proxy.cell(obj.Machine) if obj.Machine else {}
         return core.ToolPath(**{**self.arrays(obj), "feeds": feeds}, **cell)
 
-    def execute(self, obj):
+    def execute(self, obj: DocumentObject) -> None:
         if obj.SourceObject is not None:
             follow(obj)
         elif obj.Source and obj.RollOfPoses != (roll := roll_text(obj)):
@@ -189,7 +200,7 @@ class RobotPath(Proxy):
         obj.Path = Path.Path(_commands(contacts, feeds, arrays["rapid"]))
 
 
-def _commands(contacts, feeds, rapid):
+def _commands(contacts: Floats, feeds: Floats, rapid: Array) -> list[Any]:
     """X Y Z of the contact in mm, its rotation vector in degrees as U V W (A B C would be drawn as
     angles of a rotary table), F in mm/s."""
     turns = np.degrees(frames.rotation_vectors(contacts[:, :3, :3]))
@@ -200,7 +211,9 @@ def _commands(contacts, feeds, rapid):
     ]
 
 
-def make_robot_path(doc, arrays, label="Program"):
+def make_robot_path(
+    doc: Document, arrays: Mapping[str, Array], label: str = "Program"
+) -> DocumentObject:
     """Adds a RobotPath with the poses in ``arrays`` (as ``Program.path_arrays`` gives them)."""
     obj = doc.addObject("Path::FeaturePython", "RobotPath")
     obj.Label = label
@@ -209,7 +222,7 @@ def make_robot_path(doc, arrays, label="Program"):
     return obj
 
 
-def set_arrays(obj, arrays):
+def set_arrays(obj: DocumentObject, arrays: Mapping[str, Array]) -> None:
     """Gives a RobotPath other poses."""
     matrices = np.asarray(arrays["frames"], dtype=float).reshape(-1, 16).tolist()
     obj.Poses = [FreeCAD.Placement(FreeCAD.Matrix(*values)) for values in matrices]
@@ -223,26 +236,31 @@ def set_arrays(obj, arrays):
     obj.Planned = False
 
 
-def _roll(obj):
-    """The roll as ``readers.roll.lay`` takes it; held, it is not asked for: most programs have none."""
+def _roll(obj: DocumentObject) -> tuple[str | None, list[float] | None]:
+    """The roll as ``languages.roll.lay`` takes it; held, it is not asked for: most programs have none."""
     direction = list(obj.RollDirection) if obj.Roll == "fixed" else None
     return None if obj.Roll == "hold" else obj.Roll, direction
 
 
-def roll_text(obj):
+def roll_text(obj: DocumentObject) -> str:
     """The roll that is asked for, as ``RollOfPoses`` keeps it."""
     rule, direction = _roll(obj)
     return f"{rule or 'hold'}{'' if direction is None else f' {direction}'}"
 
 
-def read_arrays(path, roll=None, direction=None, values=None):
+def read_arrays(
+    path: Path | str,
+    roll: str | None = None,
+    direction: Sequence[float] | None = None,
+    values: Json | None = None,
+) -> tuple[Program, dict[str, Array]]:
     """(Program, arrays) of a robot program's file; the window stays alive meanwhile. Raises InputError,
     and Cancelled where a person cancels it; fewer than two poses are refused unless the program asks for values
-    that may bring more. ``roll``, ``direction``: as ``readers.roll.lay`` takes them; ``values``: as
+    that may bring more. ``roll``, ``direction``: as ``languages.roll.lay`` takes them; ``values``: as
     ``read_program`` does.
     """
 
-    def work(context):
+    def work(context: Context) -> tuple[Program, dict[str, Array]]:
         with stoppable(context):
             program = read_program(path, roll, direction, values)
             return program, program.path_arrays(DEFAULT_FEED)
@@ -253,7 +271,8 @@ def read_arrays(path, roll=None, direction=None, values=None):
     if count < 2 and not program_values.asked(program, path):
         why = ""
         if program.problems:
-            why = core.Fact("job.first_problem", " ({problem})", problem=program.problems[0])
+            first = ordered(program.problems)[0]
+            why = core.Fact("job.first_problem", " ({problem})", problem=first)
         raise InputError(
             "objects.too_few_targets",
             "{file}: {count} Cartesian targets; two at least make a path{why}",
@@ -264,12 +283,12 @@ def read_arrays(path, roll=None, direction=None, values=None):
     return program, arrays
 
 
-def read_again(obj):
+def read_again(obj: DocumentObject) -> dict[str, Array]:
     """The arrays that the file of a RobotPath gives now, as the object reads it. Raises InputError, Cancelled."""
     return read_arrays(obj.Source, *_roll(obj), json.loads(obj.Values) if obj.Values else None)[1]
 
 
-def follow(obj):
+def follow(obj: DocumentObject) -> None:
     """Takes the poses of a RobotPath from its SourceObject. Raises InputError; then nothing is
     changed.
 
@@ -296,7 +315,9 @@ def follow(obj):
     stored_facts.store(obj, "Problems", told_problems(program, DEFAULT_FEED))
 
 
-def load_program(obj, path, given=None, **values):
+def load_program(
+    obj: DocumentObject, path: Path | str, given: Json | None = None, **values: Any
+) -> None:
     """Reads a robot program's file into a RobotPath. Raises InputError; then nothing is changed.
 
     ``given``: what only the controller knows, as in a values file, from now on; without it what the object
@@ -305,7 +326,7 @@ def load_program(obj, path, given=None, **values):
     """
     kept = "" if os.path.abspath(path) != obj.Source else obj.Values
     if given is not None:
-        kept = json.dumps(given)
+        kept = json.dumps(given, allow_nan=False)
     program, arrays = read_arrays(path, *_roll(obj), json.loads(kept) if kept else None)
     if obj.Machine is not None:
         program.check_holding(obj.Machine.Holding)
@@ -320,7 +341,7 @@ def load_program(obj, path, given=None, **values):
     set_by_name(obj, values)
 
 
-def write(obj, file, **options):
+def write(obj: DocumentObject, file: Path | str, **options: Any) -> Any:
     """Writes a RobotPath as a robot program; what ``write_program`` returns. Raises InputError."""
     arrays = obj.Proxy.arrays(obj)
     feeds, forces = arrays["feeds"], arrays["forces"]

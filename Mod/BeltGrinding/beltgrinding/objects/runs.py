@@ -1,12 +1,24 @@
 """Grinds a job here and now, and keeps results in its Simulation. Offered by ``api``."""
 
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..base.kinds import Context
 from ..simulation import convergence, run as runs
 from ..simulation.result import Result
 from . import fields, job_inputs, simulation as results
 from .job_data import child
+from .kinds import DocumentObject
+
+if TYPE_CHECKING:
+    from .result_files import Written
 
 
-def simulate(job, context=None, write_to=None):
+def simulate(
+    job: DocumentObject, context: Context = None, write_to: Path | str | None = None
+) -> DocumentObject:
     """Grinds the job here and now; returns its Simulation object. ``write_to``: a folder for the
     files that ``beltgrind run`` writes.
     """
@@ -17,8 +29,10 @@ def simulate(job, context=None, write_to=None):
     return store_result(job, result, job_inputs.fingerprint(job))
 
 
-def store_result(job, result, fingerprint, files=None):
-    """Puts a ``job.Result`` into the job's Simulation and returns that. ``fingerprint``: of the
+def store_result(
+    job: DocumentObject, result: Result, fingerprint: str, files: Written | None = None
+) -> DocumentObject:
+    """Puts a run's ``Result`` into the job's Simulation and returns that. ``fingerprint``: of the
     inputs that the run had (``job_object.fingerprint``); the job marks others as out of date. ``files``:
     what ``simulation.files_of`` gives, if it is there already.
     """
@@ -34,7 +48,7 @@ def store_result(job, result, fingerprint, files=None):
     return simulation
 
 
-def import_result(job, folder):
+def import_result(job: DocumentObject, folder: Path | str) -> DocumentObject:
     """Brings back what ``beltgrind run`` wrote to ``folder`` for this job. A result of other inputs
     is marked out of date.
     """
@@ -44,7 +58,7 @@ def import_result(job, folder):
     return store_result(job, result, job_inputs.fingerprint(job) if same else "other inputs")
 
 
-def check_settings(job, context=None):
+def check_settings(job: DocumentObject, context: Context = None) -> DocumentObject:
     """Runs the job coarser, as given and finer, here and now; keeps result and answer in its
     Simulation, which it returns. See ``beltgrinding.converge``.
     """

@@ -1,12 +1,17 @@
 """A cross-section of the result in the document: its plane, its figures, its line on the surface."""
 
+from __future__ import annotations
+
 import json
+from typing import Any
 
 import numpy as np
 
+from ..base.kinds import Array, Json
 from ..engine import InputError
 from ..inspection import edge_profile, section as sections
 from .fields import field_of
+from .kinds import DocumentObject, Field
 from .properties import Output, add_outputs
 from .proxy import Proxy
 
@@ -45,7 +50,7 @@ class Section(Proxy):
     TYPE = "BeltGrinding::Section"
     VIEW = "SectionView"
 
-    def add_properties(self, obj):
+    def add_properties(self, obj: DocumentObject) -> None:
         if "Simulation" not in obj.PropertiesList:
             obj.addProperty("App::PropertyLink", "Simulation", "Section", "the result that is cut")
             obj.setEditorMode("Simulation", 1)
@@ -56,10 +61,10 @@ class Section(Proxy):
                     obj.Cut = [PLANE, LINE]
         add_outputs(obj, OUTPUTS)
 
-    def execute(self, obj):
+    def execute(self, obj: DocumentObject) -> None:
         self.update(obj)
 
-    def cut(self, obj):
+    def cut(self, obj: DocumentObject) -> dict[str, Any]:
         """The section as plain data (``beltgrinding.section``). Raises InputError."""
         simulation, job = obj.Simulation, obj.getParentGroup()
         if simulation is None or job is None:
@@ -80,7 +85,7 @@ class Section(Proxy):
             return sections.of_field_between(field, tolerance, obj.Start, obj.End)
         return sections.of_field(field, tolerance, obj.Point, obj.Normal)
 
-    def update(self, obj):
+    def update(self, obj: DocumentObject) -> None:
         """Cuts again if the result, the plane or the tolerance is another one. What cannot be cut
         leaves no line, and its reason in ``Problem``.
         """
@@ -92,7 +97,7 @@ class Section(Proxy):
         place = (obj.Start, obj.End) if obj.Cut == LINE else (obj.Point, obj.Normal)
         tolerance = [job.ToleranceLower.Value, job.ToleranceUpper.Value]
         result = [simulation.Fingerprint, simulation.WallTime]
-        shown = json.dumps([result, tolerance, obj.Cut, *map(list, place)])
+        shown = json.dumps([result, tolerance, obj.Cut, *map(list, place)], allow_nan=False)
         if shown == obj.Shown:
             return
         try:
@@ -102,7 +107,7 @@ class Section(Proxy):
         obj.Shown = shown
 
 
-def show(obj, section):
+def show(obj: DocumentObject, section: Json) -> None:
     """Puts a section's figures and its line into the object."""
     figures = sections.summary(section)
     deviation = figures.get("deviation_mm", {})
@@ -121,7 +126,7 @@ def show(obj, section):
     obj.Problem = ""
 
 
-def first_plane(field):
+def first_plane(field: Field) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """(point, normal) of a plane across the longest side of what was ground, through its middle: it always
     meets the surface.
     """
@@ -130,13 +135,13 @@ def first_plane(field):
     return middle_of_ground(field), tuple(np.eye(3)[axis].tolist())
 
 
-def ground(field):
+def ground(field: Field) -> Array:
     """Indices of the samples at which something was removed; of all where nothing was."""
     found = np.flatnonzero(field.stock_height - field.height > REMOVED)
     return found if len(found) else np.arange(field.size)
 
 
-def middle_of_ground(field):
+def middle_of_ground(field: Field) -> tuple[float, ...]:
     """(x, y, z) of the middle of the ground area, mm; where a plane through it might miss the surface, of the
     sample nearest to it."""
     chosen = ground(field)

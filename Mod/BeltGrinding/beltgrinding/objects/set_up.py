@@ -1,7 +1,11 @@
 """Adds what a job consists of: part, stock, machine, belt, paths. Offered by ``api``."""
 
+from __future__ import annotations
+
 import contextlib
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import FreeCAD
 
@@ -18,11 +22,14 @@ from . import (
 )
 from .creation import called, make_child, removed_on_error
 from .job_data import child, children
+from .kinds import Document, DocumentObject, Faces, Links
 from .properties import set_by_name
 from .simulation import simulated
 
 
-def make_job(design, faces=(), **properties):
+def make_job(
+    design: DocumentObject | Links, faces: Sequence[str | int] = (), **properties: Any
+) -> DocumentObject:
     """Adds a job to the design's document. ``design``: a Part object, or a Mesh object, of whose triangles
     a Part object with faces is made; ``faces``: names such as "Face3" or numbers from 1, none for all; or
     ``design`` is a list of (object, names).
@@ -36,7 +43,7 @@ def make_job(design, faces=(), **properties):
     job = links[0][0].Document.addObject("App::DocumentObjectGroupPython", "BeltGrindingJob")
     with removed_on_error(job), contextlib.ExitStack() as parts:
 
-        def part_of(obj):
+        def part_of(obj: DocumentObject) -> DocumentObject:
             if obj not in meshes:
                 return obj
             made = mesh_part.faces_of(obj)
@@ -57,7 +64,9 @@ def make_job(design, faces=(), **properties):
     return job
 
 
-def make_stock(job, source=None, **properties):
+def make_stock(
+    job: DocumentObject, source: DocumentObject | Path | str | None = None, **properties: Any
+) -> DocumentObject:
     """Adds the stock to a job, or changes the one it has. ``source``: a Part or Mesh object, or a
     mesh's file; its kind follows from it.
     """
@@ -71,7 +80,7 @@ def make_stock(job, source=None, **properties):
     return make_child(job, stocks.Stock, "Stock", label, properties)
 
 
-def make_belt_machine(job, **properties):
+def make_belt_machine(job: DocumentObject, **properties: Any) -> DocumentObject:
     """Adds the belt machine to a job, or changes the one it has."""
     label = FreeCAD.Qt.translate("BeltGrinding", "Belt machine")
     machine = make_child(job, belt_machine.BeltMachine, "BeltMachine", label, properties)
@@ -80,7 +89,7 @@ def make_belt_machine(job, **properties):
     return machine
 
 
-def make_belt(job, **properties):
+def make_belt(job: DocumentObject, **properties: Any) -> DocumentObject:
     """Puts a belt, which carries its wear from run to run, on the job's machine, or changes the one
     it has. Another job shares it by its machine's ``Belt``.
     """
@@ -98,7 +107,7 @@ def make_belt(job, **properties):
     return machine.Belt
 
 
-def wear_belt(job):
+def wear_belt(job: DocumentObject) -> DocumentObject:
     """Counts what the belt did in the job's simulation, once the grind is done for real: the next
     run meets the belt as it is then. Returns the belt.
     """
@@ -108,7 +117,9 @@ def wear_belt(job):
     return belt
 
 
-def import_program(job, path, **properties):
+def import_program(
+    job: DocumentObject | Document, path: Path | str, **properties: Any
+) -> DocumentObject:
     """Adds a robot program's file (.src, .csv) as RobotPath to a job, or to a document. In the job it takes the
     place of passes that were only proposed (``set_up``), or both would be ground.
     """
@@ -127,7 +138,7 @@ def import_program(job, path, **properties):
     return program
 
 
-def follow_path(job, source, **properties):
+def follow_path(job: DocumentObject, source: DocumentObject, **properties: Any) -> DocumentObject:
     """Adds a RobotPath that follows a path object of FreeCAD: a ``Path::Feature`` (CAM), whose
     commands say where the contact runs, or a ``Robot::TrajectoryObject``. It changes when that does.
     """
@@ -145,7 +156,9 @@ def follow_path(job, source, **properties):
     return program
 
 
-def make_raster(job, faces=(), compute=True, **properties):
+def make_raster(
+    job: DocumentObject, faces: Faces = (), compute: bool = True, **properties: Any
+) -> DocumentObject:
     """Adds a raster path to a job: contact passes side by side on ``faces``, given as for
     ``make_job`` (names of the first design object, or a list of (object, names)); none: the job's
     design faces. It is laid anew when an input changes. ``compute=False`` leaves it empty until
@@ -170,7 +183,7 @@ def make_raster(job, faces=(), compute=True, **properties):
     return path
 
 
-def export_program(path, file, **options):
+def export_program(path: DocumentObject, file: Path | str, **options: Any) -> Any:
     """Writes a RobotPath as a new robot program (.src, .mod, .script, .csv), overrides applied.
 
     Poses are written as they are, arcs as the chords they were cut into. Tool and base are set as the

@@ -1,20 +1,29 @@
 """The result of a simulation in the document: the stored height field, the events, the figures."""
 
+from __future__ import annotations
+
 import base64
 import json
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..cell import events as event_lists
+from ..base.kinds import Array, Json
+from ..cell import event_lines, events as event_lists
 from ..engine import InputError, core
 from ..job import resolution
 from ..job.poses import program_name
 from ..simulation import result_folder
 from . import part_scan, report_data, result_files
 from .job_data import child
+from .kinds import DocumentObject, Event, Field
 from .properties import Output, add_outputs
 from .proxy import Proxy
+
+if TYPE_CHECKING:
+    from ..simulation.result import Result
 
 OUTPUTS = (
     Output("OutOfDate", "Bool", "Result", "an input has changed since; simulate again"),
@@ -65,7 +74,7 @@ class Simulation(Proxy):
     TYPE = "BeltGrinding::Simulation"
     VIEW = "SimulationView"
 
-    def add_properties(self, obj):
+    def add_properties(self, obj: DocumentObject) -> None:
         if "HeightField" not in obj.PropertiesList:
             obj.addProperty(
                 "App::PropertyFileIncluded", "HeightField", "Result", "the ground height field"
@@ -75,12 +84,12 @@ class Simulation(Proxy):
         add_outputs(obj, result_files.OUTPUTS)
         report_data.add(obj)
 
-    def field(self, obj):
+    def field(self, obj: DocumentObject) -> Field | None:
         """core.HeightField of the result; None if there is none."""
         path = result_files.sound(obj, "HeightField")
         return core.HeightField.from_hdf5(path)[0] if path else None
 
-    def recording(self, obj):
+    def recording(self, obj: DocumentObject) -> tuple[core.Recording, dict[str, Array]] | None:
         """(core.Recording, steps as in ``Result.steps``) of the result; None if there is none."""
         data = result_files.read(obj, "Recording")
         if not data:
@@ -89,7 +98,7 @@ class Simulation(Proxy):
         steps = json.loads(attributes)["steps"]
         return recording, {name: _unpacked(values) for name, values in steps.items()}
 
-    def motions(self, obj):
+    def motions(self, obj: DocumentObject) -> dict[str, Array] | None:
         """As ``beltgrinding.motions`` has them; None where an older version made the result."""
         if not obj.MotionPoses:
             return None
@@ -101,38 +110,42 @@ class Simulation(Proxy):
             **({"time": np.array(obj.MotionTimes)} if obj.MotionTimes else {}),
         }
 
-    def events(self, obj):
+    def events(self, obj: DocumentObject) -> list[Event]:
         """List of dicts, as events.schema.json says."""
         return event_lists.complete(json.loads(obj.EventData or "[]"))
 
 
-def _packed(values):
+def _packed(values: Array) -> list[str]:
     """[kind, Base64] of an array (n,): as text, numbers take longer than all else of the file."""
     kind = {"b": "|b1", "f": "<f8"}.get(values.dtype.kind, "<i8")
     return [kind, base64.b64encode(values.astype(kind).tobytes()).decode()]
 
 
-def _unpacked(values):
+def _unpacked(values: Sequence[Any]) -> Array:
     """The array of ``_packed``, or of the list of numbers of an older version."""
     if len(values) == 2 and isinstance(values[0], str):
         return np.frombuffer(base64.b64decode(values[1]), np.dtype(values[0])).copy()
     return np.array(values)
 
 
-def files_of(result, folder=None):
-    """The HDF5 files of a ``job.Result`` as ``result_files.Written``; may be called in any thread. ``folder``: the
+def files_of(result: Result, folder: str | None = None) -> result_files.Written:
+    """The HDF5 files of a run's ``Result`` as ``result_files.Written``; may be called in any thread. ``folder``: the
     document's ``TransientDir``. Raises InputError."""
     job = {**_without_bulk(result.job), "run_id": result_folder.run_id(result.summary)}
-    files = {"HeightField": lambda file: result.field.hdf5_into(file, json.dumps(job))}
+    files: dict[str, Any] = {
+        "HeightField": lambda file: result.field.hdf5_into(file, json.dumps(job, allow_nan=False))
+    }
     if result.recording is not None:
         steps = {name: _packed(values) for name, values in result.steps.items()}
-        about = json.dumps({"steps": steps})
+        about = json.dumps({"steps": steps}, allow_nan=False)
         files["Recording"] = lambda file: result.recording.hdf5_into(file, about)
     return result_files.Written(files, folder)
 
 
-def store(obj, result, fingerprint, files=None):
-    """Puts a ``job.Result`` into a Simulation object; ``files``: ``files_of`` it, if they are there."""
+def store(
+    obj: DocumentObject, result: Result, fingerprint: str, files: result_files.Written | None = None
+) -> None:
+    """Puts a run's ``Result`` into a Simulation object; ``files``: ``files_of`` it, if they are there."""
     files = files or files_of(result, obj.Document.TransientDir)
     try:
         _store(obj, result, files)
@@ -143,7 +156,7 @@ def store(obj, result, fingerprint, files=None):
     obj.OutOfDate = False
 
 
-def _store(obj, result, files):
+def _store(obj: DocumentObject, result: Result, files: result_files.Written) -> None:
     part_scan.forget(obj)  # it was compared with the older result
     _prepare_recording(obj, result)
     result_files.store(obj, files)
@@ -157,30 +170,35 @@ def _store(obj, result, files):
     obj.Resolution = s.get("resolution", resolution.FULL)
     obj.MissedRays, obj.DefectiveSamples = s["missed_rays"], s["defective_samples"]
     store_events(obj, result.events, result.job)
-    obj.EventZones = json.dumps(result.judged_by().get("zones", []))
+    obj.EventZones = json.dumps(result.judged_by().get("zones", []), allow_nan=False)
     obj.Warnings = s["warnings"]
     obj.ElasticModel, obj.LawModel = s["models"]["compliance"], s["models"]["law"]
     obj.RemainingCut = 100.0 * s["belt"]["remaining_cut"]
     before, machine = result.job["belt_machine"]["belt"], result.job["belt_machine"]
     during = {key: s["belt"][key] - before[key] for key in before}
     kept = {"belt_machine": {"belt_wear": machine["belt_wear"]}, "law": result.job["law"]}
-    obj.BeltUse = json.dumps({"during": during, "job": kept})
+    obj.BeltUse = json.dumps({"during": during, "job": kept}, allow_nan=False)
     report_data.store(obj, result)
     _store_verdict(obj, result)
 
 
-def store_events(obj, events, job):
+def store_events(obj: DocumentObject, events: Sequence[Event], job: Json) -> None:
     """Puts events into a Simulation; ``job``: of which the programs' names are asked."""
     obj.Events = [describe(event, job) for event in events]
-    obj.EventData = json.dumps(events)
+    obj.EventData = json.dumps(events, allow_nan=False)
     obj.EventCount = len(events)
 
 
-def _store_verdict(obj, result):
+def _store_verdict(obj: DocumentObject, result: Result) -> None:
     """The verdict of the run, and what it takes to judge again."""
     obj.UnresolvedMotions = result.summary.get("unresolved_motions", 0)
     obj.Programs = [program_name(result.job, i) for i in range(len(result.job["programs"]))]
-    motions = result.motions or {"program": [], "pose": [], "line": [], "point": []}
+    motions: Mapping[str, Any] = result.motions or {
+        "program": [],
+        "pose": [],
+        "line": [],
+        "point": [],
+    }
     for name in ("program", "pose", "line"):
         values = [int(value) for value in motions[name]]
         setattr(obj, f"Motion{name.title()}s", values)
@@ -189,10 +207,10 @@ def _store_verdict(obj, result):
     inspection = result.judged_by()
     kept = {key: inspection.get(key, []) for key in ("tolerance_mm", "zones")}
     judged = {"inspection": kept, "verdict": result.verdict} if result.verdict else {}
-    obj.VerdictData = json.dumps(judged)
+    obj.VerdictData = json.dumps(judged, allow_nan=False)
 
 
-def _prepare_recording(obj, result):
+def _prepare_recording(obj: DocumentObject, result: Result) -> None:
     """The property exists only where there is a recording: FreeCAD empties none of its kind."""
     there = "Recording" in obj.PropertiesList
     if there and result.recording is None:
@@ -204,7 +222,7 @@ def _prepare_recording(obj, result):
     obj.setEditorMode("Recording", 1)
 
 
-def _without_bulk(job):
+def _without_bulk(job: Json) -> dict[str, Any]:
     """The job without what the document holds anyway: shapes and poses."""
     bulk = ("brep", "poses")
     job = {k: v for k, v in job.items()}
@@ -216,12 +234,20 @@ def _without_bulk(job):
     return job
 
 
-def is_coarse(simulation):
+def errors(simulation: DocumentObject) -> list[core.Fact]:
+    """[Fact]: what went wrong on the way so that the part is spoilt or the machine stops, one for each kind of event."""
+    programs = [{"name": name} for name in simulation.Programs]
+    found = simulation.Proxy.events(simulation)
+    found = [e for e in found if e["severity"] == "error" and e["program"] < len(programs)]
+    return [fact for _, fact in event_lines.lines(found, {"programs": programs})]
+
+
+def is_coarse(simulation: DocumentObject) -> bool:
     """Whether a Simulation's figures are those of a coarse run; not of one of an older version."""
     return getattr(simulation, "Resolution", "") == resolution.COARSE
 
 
-def describe(event, job):
+def describe(event: Event, job: Json) -> str:
     """One line for an event."""
     program = job["programs"][event["program"]]
     where = program.get("name") or Path(program.get("file", "program")).name
@@ -232,7 +258,7 @@ def describe(event, job):
     )
 
 
-def simulated(job):
+def simulated(job: DocumentObject) -> DocumentObject:
     """The job's Simulation, which has a result. Raises InputError."""
     found = child(job, Simulation)
     if found is None or not found.Fingerprint:

@@ -1,12 +1,17 @@
 """The stock in the document: a uniform allowance, a solid or a mesh."""
 
+from __future__ import annotations
+
 import hashlib
 import os
 from functools import lru_cache
+from pathlib import Path
+from typing import Any
 
 from ..engine import InputError
 from ..job.workpiece import OwnBrep
 from .geometry import export_solid, faces_digest, geometry_digest, placed_shape, placement_to_job
+from .kinds import DocumentObject, PartShape
 from .properties import Key, add_keys, check_limits, get_value
 from .proxy import Proxy, checking
 
@@ -36,13 +41,13 @@ class Stock(Proxy):
     TYPE = "BeltGrinding::Stock"
     VIEW = "StockView"
 
-    def add_properties(self, obj):
+    def add_properties(self, obj: DocumentObject) -> None:
         add_keys(obj, KEYS)
         for name, kind, group, text in LINKS:
             if name not in obj.PropertiesList:
                 obj.addProperty(f"App::Property{kind}", name, group, text)
 
-    def execute(self, obj):
+    def execute(self, obj: DocumentObject) -> None:
         """Raises InputError for a stock that cannot be; the tree shows it there."""
         with checking(obj):
             check_limits(obj, [key for key in KEYS if key.name in USED[obj.Kind]])
@@ -51,12 +56,12 @@ class Stock(Proxy):
             elif obj.Kind == "mesh":
                 _require_mesh(obj)
 
-    def settings(self, obj):
+    def settings(self, obj: DocumentObject) -> dict[str, Any]:
         """The part of a job under 'stock' that needs no geometry."""
         used = USED[obj.Kind]
         return {k.key.split(".")[1]: get_value(obj, k) for k in KEYS if k.name in used}
 
-    def digest(self, obj):
+    def digest(self, obj: DocumentObject) -> str:
         """Hash of the stock's geometry; '' for an allowance."""
         if obj.Kind == "allowance":
             return ""
@@ -73,7 +78,7 @@ class Stock(Proxy):
             return geometry_digest(obj.Source)
         return faces_digest(_shape(obj).Faces)
 
-    def to_job(self, obj, folder):
+    def to_job(self, obj: DocumentObject, folder: Path | str) -> dict[str, Any]:
         """The part of a job under 'stock'; a mesh of the document is written to ``folder``."""
         job = self.settings(obj)
         if obj.Kind == "solid":
@@ -90,7 +95,7 @@ class Stock(Proxy):
 
 
 @lru_cache(maxsize=8)
-def _file_digest(path, size, time):
+def _file_digest(path: str, size: int, time: int) -> str:
     hashed = hashlib.sha256()
     with open(path, "rb") as file:
         while chunk := file.read(1 << 20):
@@ -98,7 +103,7 @@ def _file_digest(path, size, time):
     return hashed.hexdigest()
 
 
-def _require_solid(obj):
+def _require_solid(obj: DocumentObject) -> None:
     if obj.Source is None:
         raise InputError(
             "objects.no_solid", "{object}: choose the solid that is the stock", object=obj.Label
@@ -112,7 +117,7 @@ def _require_solid(obj):
         )
 
 
-def _require_mesh(obj):
+def _require_mesh(obj: DocumentObject) -> None:
     if obj.Source is None and not obj.File:
         raise InputError(
             "objects.no_mesh", "{object}: choose the mesh: an object or a file", object=obj.Label
@@ -126,6 +131,6 @@ def _require_mesh(obj):
         )
 
 
-def _shape(obj):
+def _shape(obj: DocumentObject) -> PartShape:
     _require_solid(obj)
     return placed_shape(obj.Source)

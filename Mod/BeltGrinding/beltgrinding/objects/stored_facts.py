@@ -2,28 +2,34 @@
 sentences in another language.
 """
 
+from __future__ import annotations
+
 import json
+from collections.abc import Sequence
 
 from ..base.grouping import grouped
 from ..base.messages import fact_data, sentence
+from .kinds import DocumentObject
 from .properties import Output
 
 MOST = 200  # facts kept beside their sentences
 
 
-def output(name, group):
+def output(name: str, group: str) -> Output:
     """The hidden property beside the StringList ``name``."""
     return Output(f"{name}Data", "String", group, "the same as JSON, for other languages", True)
 
 
-def store(obj, name, facts):
+def store(obj: DocumentObject, name: str, facts: Sequence[str]) -> None:
     """Sets both properties. ``facts``: Facts, or sentences that are none."""
     setattr(obj, name, [str(fact) for fact in facts])
     data = [fact_data(fact) for fact in facts[:MOST]]
-    setattr(obj, f"{name}Data", json.dumps(data) if data else "")
+    setattr(obj, f"{name}Data", json.dumps(data, allow_nan=False) if data else "")
 
 
-def sentences(obj, name, language, most=MOST, alike=False):
+def sentences(
+    obj: DocumentObject, name: str, language: str, most: int | None = MOST, alike: bool = False
+) -> list[str]:
     """The first ``most`` sentences of a property (None: all); ``alike``: many of a kind as one. Those without
     a fact are told as they stand: of a version before 0.2, or set by a macro.
     """

@@ -1,13 +1,17 @@
 """A study in the document: what varies, which runs are made, their table and its answers."""
 
+from __future__ import annotations
+
 import hashlib
 import json
 import tempfile
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ..base import schemas
 from ..base.files import json_bytes, write_whole
+from ..base.kinds import Context, Json
 from ..engine import Cancelled, InputError, core
 from ..studies import (
     answers,
@@ -20,6 +24,7 @@ from ..studies import (
 )
 from . import job_inputs, result_files, stored_facts, study_keys
 from .job_data import children, inspection
+from .kinds import DocumentObject
 from .properties import Key, Output, add_keys, add_outputs, to_job
 from .proxy import Proxy
 from .robot_path import RobotPath
@@ -57,7 +62,7 @@ class Study(Proxy):
     TYPE = "BeltGrinding::Study"
     VIEW = "StudyView"
 
-    def add_properties(self, obj):
+    def add_properties(self, obj: DocumentObject) -> None:
         add_keys(obj, KEYS)
         if "Workers" not in obj.PropertiesList:
             text = "processes that run; 0: as many as there are cores, 1: one run after the other"
@@ -68,10 +73,10 @@ class Study(Proxy):
             obj.addProperty("App::PropertyFileIncluded", TABLE, "Study", text)
             obj.setEditorMode(TABLE, 2)
 
-    def execute(self, obj):
+    def execute(self, obj: DocumentObject) -> None:
         self.update(obj)
 
-    def update(self, obj):
+    def update(self, obj: DocumentObject) -> None:
         """Marks it as out of date; a job that was set to one of its runs is not."""
         job = obj.getParentGroup()
         if job is None or not obj.Fingerprint:
@@ -84,15 +89,15 @@ class Study(Proxy):
         if obj.OutOfDate != stale:
             obj.OutOfDate = stale
 
-    def settings(self, obj):
+    def settings(self, obj: DocumentObject) -> dict[str, Any]:
         """As Resources/schema/study.schema.json has them, without the job."""
-        data = {}
+        data: dict[str, Any] = {}
         to_job(obj, KEYS, data)
         found = data["study"]
         found["vary"] = found.get("vary") or []
         return found
 
-    def table(self, obj):
+    def table(self, obj: DocumentObject) -> tables.Table | None:
         """The ``Table``; None before the first run. Raises InputError for a damaged document."""
         data = result_files.read(obj, TABLE)
         if data is None:
@@ -103,7 +108,7 @@ class Study(Proxy):
             write_whole(path, data)
             return tables.Table.read(path, design["varied"], design["figures"])
 
-    def answers(self, obj):
+    def answers(self, obj: DocumentObject) -> dict[str, Any] | None:
         """What it answers, as ``studies.answers`` gives it; None where no run has figures."""
         return json.loads(obj.Answers) if obj.Answers else None
 
@@ -111,19 +116,23 @@ class Study(Proxy):
 class Opened(NamedTuple):
     """What came of setting the document to a run."""
 
-    left: list  # names of what varies that no property of the document holds: it stays as it is
-    laid_anew: list  # labels of paths that follow the new settings: their poses are not the run's
+    left: list[
+        str
+    ]  # names of what varies that no property of the document holds: it stays as it is
+    laid_anew: list[
+        str
+    ]  # labels of paths that follow the new settings: their poses are not the run's
 
 
-def _hash(*data):
-    return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()
+def _hash(*data: Any) -> str:
+    return hashlib.sha256(json.dumps(data, sort_keys=True, allow_nan=False).encode()).hexdigest()
 
 
-def _job_fingerprint(job):
+def _job_fingerprint(job: DocumentObject) -> str:
     return _hash(job_inputs.fingerprint(job), inspection(job))
 
 
-def fingerprint(obj, job):
+def fingerprint(obj: DocumentObject, job: DocumentObject) -> str:
     """Hash of all that a study depends on."""
     return _hash(_job_fingerprint(job), obj.Proxy.settings(obj))
 
@@ -131,7 +140,7 @@ def fingerprint(obj, job):
 class Work:
     """What is run of a job, collected here and now; ``find`` runs it, in any thread. Raises InputError."""
 
-    def __init__(self, obj, job):
+    def __init__(self, obj: DocumentObject, job: DocumentObject) -> None:
         settings = obj.Proxy.settings(obj)
         if not settings["vary"]:
             raise InputError(
@@ -149,7 +158,12 @@ class Work:
             if json.loads(obj.Design)["vary"] == self.study["vary"]:
                 self.known = obj.Proxy.table(obj)
 
-    def find(self, data, context=None, told=None):
+    def find(
+        self,
+        data: Json,
+        context: Context = None,
+        told: Callable[[making.Progress], object] | None = None,
+    ) -> Found:
         """A ``Found`` for a job's data; of one that is cancelled, with the runs that had ended. Raises InputError, Cancelled
         if none had."""
         context = context or core.RunContext()
@@ -166,22 +180,16 @@ class Work:
                 made, cancelled = self._what_is_there(prepared, folder), True
         answered = None
         if made.done.any():
-            answered = answers.answers(study, prepared.design, made)
+            answered = answers.answers(study, prepared.design, made, None if cancelled else context)
             if not cancelled:
                 checking.check(answered, study, context)
         return Found(self, made, prepared.design, answered, cancelled, prepared.warnings)
 
-    def _workers(self, prepared):
-        """Without Dask, or for a run or two, this process alone."""
-        if self.workers is None:
-            try:
-                import distributed  # noqa: F401
-            except ImportError:
-                return 0
-            return 0 if len(prepared.runs) < 3 else None
-        return self.workers
+    def _workers(self, prepared: making.Prepared) -> int | None:
+        """For a run or two, this process alone."""
+        return 0 if self.workers is None and len(prepared.runs) < 3 else self.workers
 
-    def _lay_down(self, prepared, folder):
+    def _lay_down(self, prepared: making.Prepared, folder: Path | str) -> None:
         """What the document's table has already is not run again."""
         if self.known is None or not set(prepared.figures) <= set(self.known.names):
             return
@@ -207,7 +215,7 @@ class Work:
             )
 
     @staticmethod
-    def _what_is_there(prepared, folder):
+    def _what_is_there(prepared: making.Prepared, folder: Path | str) -> tables.Table:
         path = Path(folder, tables.FILE)
         if not path.exists():
             raise Cancelled()
@@ -217,7 +225,7 @@ class Work:
         return made
 
 
-def _plain(value):
+def _plain(value: Any) -> Any:
     value = value.item() if hasattr(value, "item") else value
     return None if isinstance(value, float) and value != value else value
 
@@ -225,23 +233,31 @@ def _plain(value):
 class Found:
     """A study's table with what the document keeps of it; made in any thread."""
 
-    def __init__(self, work, table, design, answered, cancelled, warnings):
+    def __init__(
+        self,
+        work: Work,
+        table: tables.Table,
+        design: Json,
+        answered: Json | None,
+        cancelled: bool,
+        warnings: list[core.Fact],
+    ) -> None:
         self.work, self.table, self.design = work, table, design
         self.answers, self.cancelled, self.warnings = answered, cancelled, warnings
         self.file = result_files.Written({TABLE: table.csv_bytes()})
 
 
-def store(obj, found):
+def store(obj: DocumentObject, found: Found) -> None:
     """Puts a ``Found`` into a Study object."""
     obj.Fingerprint = obj.OpenedFingerprint = obj.JobFingerprint = ""
     status = found.table[tables.STATUS]
     obj.RunsInAll = len(found.table)
     obj.RunsDone = int((status == tables.DONE).sum())
     obj.RunsFailed = int((status == tables.FAILED).sum())
-    obj.Design = json.dumps({**found.design, "vary": found.work.study["vary"]})
+    obj.Design = json.dumps({**found.design, "vary": found.work.study["vary"]}, allow_nan=False)
     obj.Answers = "" if found.answers is None else json_bytes(found.answers).decode()
     stored_facts.store(obj, "Warnings", found.warnings)
-    obj.Base = json.dumps(found.work.base)
+    obj.Base = json.dumps(found.work.base, allow_nan=False)
     whole = [one for one in (found.answers or {}).get("yield", ()) if one["of"] == "overall"]
     share = whole[0]["share"] if whole else None
     obj.Yield = -1.0 if share is None else 100.0 * share
@@ -252,7 +268,7 @@ def store(obj, found):
     obj.OutOfDate = False
 
 
-def open_run(obj, number):
+def open_run(obj: DocumentObject, number: int) -> Opened:
     """Sets the job's properties to what run ``number`` had. Returns an ``Opened``. Raises InputError; then nothing is
     changed."""
     job, made = obj.getParentGroup(), obj.Proxy.table(obj)
@@ -291,14 +307,14 @@ def open_run(obj, number):
     return Opened(left, laid_anew)
 
 
-def check_varied(entries):
+def check_varied(entries: Iterable[Json]) -> list[vary.Variable]:
     """Raises InputError for what is no ``vary`` of a study. Returns [Variable]."""
     rule = making.schema()["properties"]["vary"]
     checked = schemas.checked(list(entries), rule, "vary") if entries else []
     return vary.variables({"vary": checked})
 
 
-def check_correlated(pairs, entries, method):
+def check_correlated(pairs: Iterable[Json], entries: Iterable[Json], method: str) -> None:
     """Raises InputError for ``pairs`` that are no ``correlations`` of a study with this ``vary`` and method."""
     rule = making.schema()["properties"]["correlations"]
     checked = schemas.checked(list(pairs), rule, "correlations") if pairs else []

@@ -1,13 +1,17 @@
 """Which keys of a job can vary in the document's studies, and how a run's values go back into its properties."""
 
+from __future__ import annotations
+
 import copy
 import json
 import math
 import re
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..base.kinds import Json
 from ..studies import vary
 from ..studies.keys import Key as JobKey
 from . import belt, belt_machine, job_data, stock
@@ -16,10 +20,14 @@ from .belt_machine import FRAMES, BeltMachine
 from .geometry import placement_from_job, placement_to_job
 from .job_data import child, children
 from .job_inputs import without_geometry
+from .kinds import DocumentObject
 from .properties import FACTOR, get_value, rule, set_value
 from .proxy import type_of
 from .robot_path import RobotPath
 from .stock import Stock
+
+if TYPE_CHECKING:
+    from .properties import Key
 
 NUMBERS = (
     "Length",
@@ -43,10 +51,10 @@ class Choice(NamedTuple):
     key: str  # as a study writes it
     text: str  # what it is, in English
     value: object  # now; None: none
-    choices: list  # of a word; None for a number
+    choices: list[str] | None  # of a word; None for a number
 
 
-def choices(job):
+def choices(job: DocumentObject) -> list[Choice]:
     """[Choice] of a job in the document, those that can be set back first."""
     found = []
     for obj, keys in _holders(job):
@@ -75,7 +83,7 @@ def choices(job):
     return found
 
 
-def _of_path(path):
+def _of_path(path: DocumentObject) -> tuple[float | None, float | None]:
     """(feed mm/s, force N) of a program: its overrides, else the middle of its poses'."""
     feed, force = path.FeedOverride.Value, path.ForceOverride.getValueAs("N").Value
     feeds = [f for f, rapid in zip(path.Feeds, path.Rapid) if not rapid]
@@ -86,9 +94,9 @@ def _of_path(path):
     )
 
 
-def _holders(job):
+def _holders(job: DocumentObject) -> list[tuple[DocumentObject, Sequence[Key]]]:
     """[(object, its Keys)] of a job."""
-    found = [(job, job_data.KEYS)]
+    found: list[tuple[DocumentObject, Sequence[Key]]] = [(job, job_data.KEYS)]
     machine, raw = child(job, BeltMachine), child(job, Stock)
     if machine is not None:
         found.append((machine, (*belt_machine.KIND_KEYS[machine.Kind], *belt_machine.KEYS)))
@@ -99,16 +107,16 @@ def _holders(job):
     return found
 
 
-def _written(dotted):
+def _written(dotted: str) -> str:
     """A property's key as a study writes it: inspection.tolerance_mm[0]."""
     return re.sub(r"\.(\d+)", r"[\1]", dotted)
 
 
-def _dotted(written):
+def _dotted(written: str) -> str:
     return INDEX.sub(r".\1", written)
 
 
-def base(job):
+def base(job: DocumentObject) -> dict[str, Any]:
     """The job's settings that can be set back, as a job has them."""
     data = without_geometry(job)
     raw = child(job, Stock)
@@ -122,13 +130,14 @@ def base(job):
         }
         for path in children(job, RobotPath)
     ]
-    return json.loads(json.dumps(data))
+    return json.loads(json.dumps(data, allow_nan=False))
 
 
-def put_in(job, held, study, values):
+def put_in(job: DocumentObject, held: Json, study: Json, values: Json) -> list[str]:
     """Sets the job's properties to a run: ``held``: of ``base``, when the study was run; ``study``: its settings with
     defaults; ``values``: of the run, by name. Returns the names of those that no property holds."""
-    found, left = [], []
+    found: list[vary.Variable] = []
+    left: list[vary.Variable] = []
     for one in vary.variables(study):
         (found if _settable(job, one) else left).append(one)
     given = copy.deepcopy(held)
@@ -138,7 +147,7 @@ def put_in(job, held, study, values):
     return [one.name for one in left]
 
 
-def _settable(job, one):
+def _settable(job: DocumentObject, one: vary.Variable) -> bool:
     if one.key == vary.PART:
         return False
     if isinstance(one.key, JobKey):
@@ -149,7 +158,7 @@ def _settable(job, one):
     return child(job, BeltMachine) is not None
 
 
-def _holder(job, text):
+def _holder(job: DocumentObject, text: str) -> tuple[DocumentObject, Key] | None:
     """(object, Key) of the property that holds a key, or the list that it is in; None without one."""
     dotted = _dotted(text)
     for obj, keys in _holders(job):
@@ -159,7 +168,7 @@ def _holder(job, text):
     return None
 
 
-def _put(job, one, made):
+def _put(job: DocumentObject, one: vary.Variable, made: Json) -> None:
     if isinstance(one.key, JobKey):
         programs = PROGRAM.fullmatch(one.key.text)
         if programs is None:
@@ -175,20 +184,20 @@ def _put(job, one, made):
     if one.key.startswith(vary.STOCK_PLACEMENT):
         child(job, Stock).FilePlacement = placement_from_job(made["stock"]["placement"])
         return
-    machine = child(job, BeltMachine)
+    machine: DocumentObject = child(job, BeltMachine)
     for name, (key, _) in FRAMES.items():
         if key == vary.OF_HOLDING[made["cell"]["holding"]]:
             setattr(machine, name, placement_from_job(made["cell"][key]))
 
 
-def _value(made, dotted):
-    node = made
+def _value(made: Json, dotted: str) -> Any:
+    node: Any = made
     for part in dotted.split("."):
         node = node[int(part)] if part.isdigit() else node[part]
     return node
 
 
-def spread(choice):
+def spread(choice: Choice) -> list[float]:
     """A first range around the value of a ``Choice``: [low, high]."""
     value = choice.value
     if not isinstance(value, (int, float)) or isinstance(value, bool) or not math.isfinite(value):

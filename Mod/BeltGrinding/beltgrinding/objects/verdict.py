@@ -1,12 +1,17 @@
 """The verdict in the document: in tolerance or not, where not, and which motions did it."""
 
+from __future__ import annotations
+
 import json
 from pathlib import Path
+from typing import Any
 
+from ..base.kinds import Array, Json
 from ..cell import events as event_lists
 from ..engine import InputError
 from ..inspection import finish_events, finish_zones, verdict as verdicts
 from .geometry import core_shape
+from .kinds import DocumentObject, Field
 from .properties import Output, add_outputs
 from .proxy import Proxy
 from .fields import field_of
@@ -60,20 +65,20 @@ class Verdict(Proxy):
     TYPE = "BeltGrinding::Verdict"
     VIEW = "VerdictView"
 
-    def add_properties(self, obj):
+    def add_properties(self, obj: DocumentObject) -> None:
         if "Simulation" not in obj.PropertiesList:
             obj.addProperty("App::PropertyLink", "Simulation", "Verdict", "the result judged")
             obj.setEditorMode("Simulation", 1)
         add_outputs(obj, OUTPUTS)
 
-    def execute(self, obj):
+    def execute(self, obj: DocumentObject) -> None:
         self.update(obj)
 
-    def data(self, obj):
+    def data(self, obj: DocumentObject) -> dict[str, Any] | None:
         """The verdict as ``beltgrinding.verdict`` gives it; None if there is none yet."""
         return json.loads(obj.Data) if obj.Data else None
 
-    def update(self, obj):
+    def update(self, obj: DocumentObject) -> None:
         """Judges again if the result or a tolerance is another one."""
         simulation, job = obj.Simulation, obj.getParentGroup()
         if simulation is None or job is None or not simulation.Fingerprint:
@@ -81,24 +86,26 @@ class Verdict(Proxy):
         if obj.OutOfDate != simulation.OutOfDate:
             obj.OutOfDate = simulation.OutOfDate
         inspection = _judged_by(job)
-        shown = json.dumps([simulation.Fingerprint, simulation.WallTime, inspection])
+        shown = json.dumps(
+            [simulation.Fingerprint, simulation.WallTime, inspection], allow_nan=False
+        )
         if shown == obj.Shown:
             return
         show(obj, verdict_of(job, simulation, inspection))
         obj.Shown = shown
 
 
-def _judged_by(job):
+def _judged_by(job: DocumentObject) -> dict[str, Any]:
     from .job_data import inspection
 
     return _limits(inspection(job))
 
 
-def _limits(inspection):
+def _limits(inspection: Json) -> dict[str, Any]:
     return {key: inspection[key] for key in ("tolerance_mm", "zones")}
 
 
-def verdict_of(job, simulation, inspection):
+def verdict_of(job: DocumentObject, simulation: DocumentObject, inspection: Json) -> dict[str, Any]:
     """The verdict that the simulation was stored with or, by other tolerances, another one."""
     stored = json.loads(simulation.VerdictData or "{}")
     judged_by = _limits(inspection)
@@ -110,7 +117,7 @@ def verdict_of(job, simulation, inspection):
     return found
 
 
-def finish_of_run(simulation):
+def finish_of_run(simulation: DocumentObject) -> dict[str, Any]:
     """{"finish": what a Simulation's job had of it, as far as judging takes it}; {} where it computed none. From the run's
     verdict: the job may have another one meanwhile.
     """
@@ -124,7 +131,7 @@ def finish_of_run(simulation):
     return {"finish": found}
 
 
-def renew_events(simulation, inspection):
+def renew_events(simulation: DocumentObject, inspection: Json) -> None:
     """Tells zones' finish anew among a Simulation's events where a job's zones are others than those by which they tell it,
     so that they say what the verdict says.
     """
@@ -149,17 +156,19 @@ def renew_events(simulation, inspection):
     store_events(simulation, events, {"programs": names})
     summary = json.loads(simulation.SummaryData or "{}")
     if summary:
-        simulation.SummaryData = json.dumps({**summary, "events": event_lists.count(events)})
-    simulation.EventZones = json.dumps(inspection["zones"])
+        simulation.SummaryData = json.dumps(
+            {**summary, "events": event_lists.count(events)}, allow_nan=False
+        )
+    simulation.EventZones = json.dumps(inspection["zones"], allow_nan=False)
 
 
-def limits_changed(job, simulation):
+def limits_changed(job: DocumentObject, simulation: DocumentObject) -> bool:
     """Whether the limits are others than those of the run, by which it told gouges."""
     stored = json.loads(simulation.VerdictData or "{}")
     return bool(stored) and stored["inspection"] != _judged_by(job)
 
 
-def judge(job, simulation, inspection):
+def judge(job: DocumentObject, simulation: DocumentObject, inspection: Json) -> dict[str, Any]:
     """The verdict on a Simulation by other tolerances. Raises InputError."""
     field = field_of(simulation)
     if field is None:
@@ -189,7 +198,7 @@ def judge(job, simulation, inspection):
     )
 
 
-def show(obj, found):
+def show(obj: DocumentObject, found: Json) -> None:
     """Puts a verdict into the object."""
     obj.Overall = found["overall"]
     obj.FaceVerdicts = [f"Face{one['face']}: {describe(one)}" for one in found["faces"]]
@@ -217,10 +226,10 @@ def show(obj, found):
     obj.ExtrapolatedLawEvents = found["extrapolated_law_events"]
     obj.NotConverged = found["not_converged_events"]
     obj.Notes = found["notes"]
-    obj.Data = json.dumps(found)
+    obj.Data = json.dumps(found, allow_nan=False)
 
 
-def describe(region):
+def describe(region: Json) -> str:
     """One line for a face or a zone."""
     worst, finish = region["worst"], ""
     if region.get("finish"):
@@ -233,7 +242,8 @@ def describe(region):
     )
 
 
-def cluster_of_samples(job, simulation):
+def cluster_of_samples(job: DocumentObject, simulation: DocumentObject) -> tuple[Field, Array]:
     """(field, number of the cluster, from 0, of every sample; core.NO_CLUSTER: in tolerance)."""
-    field, inspection = field_of(simulation), _judged_by(job)
+    field: Any = field_of(simulation)
+    inspection = _judged_by(job)
     return field, verdicts.judge({"inspection": inspection}, field)["cluster"]

@@ -1,18 +1,28 @@
 """A plan as files: the programs with their new feeds, the job that grinds them, what was planned."""
 
+from __future__ import annotations
+
 import csv
 import io
 import json
 import os
+from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..base.files import cannot_be_written, write_whole
+from ..base.kinds import Facts, Json
 from ..engine import InputError, core
 from ..job.poses import program_name
+from ..job.settings import Job
+from ..job.typed import typed
 from ..programs.patch.patch import patch
 from . import pictures, rounds as plans
+
+if TYPE_CHECKING:
+    from .rounds import Plan
 
 JOB = "job.json"
 PLAN = "plan.json"
@@ -21,7 +31,9 @@ PICTURE = "plan.png"
 RESULT = "result"
 
 
-def write(found, folder, read=(), force=False):
+def write(
+    found: Plan, folder: Path | str, read: Iterable[Path | str] = (), force: bool = False
+) -> tuple[list[str], Facts]:
     """Writes a ``Plan`` into ``folder``: job.json (the job with the planned programs), the programs' files with new
     feeds and nothing else changed, feeds.csv, plan.json, plan.png, and the result in the folder ``result``. Never over a file
     of ``read`` or of the job's inputs; over others only if a plan wrote them, or by ``force``.
@@ -38,7 +50,7 @@ def write(found, folder, read=(), force=False):
     programs, written, warnings = [], [], []
     for k, (planned, source, name) in enumerate(zip(found.job["programs"], sources, names)):
         entry, reason = planned, None
-        if source is not None:
+        if source is not None and name is not None:
             entry, reason = _patched(found, k, source, folder / name, planned)
         if reason is not None:
             warnings.append(
@@ -51,16 +63,16 @@ def write(found, folder, read=(), force=False):
                     job=JOB,
                 )
             )
-        elif source is not None:
+        elif name is not None:
             written.append(name)
         programs.append(entry)
-    job = json.dumps({**found.job, "programs": programs}, indent=1)
+    job = json.dumps({**found.job, "programs": programs}, indent=1, allow_nan=False)
     found.after.write(folder / RESULT, force, read)
     drawn = pictures.composed(pictures.draw(found), found.why["shares"])
     for name, data in (
         (JOB, (job + "\n").encode()),
         (FEEDS, feeds_csv(found).encode()),
-        (PLAN, (json.dumps(plans.summary(found), indent=1) + "\n").encode()),
+        (PLAN, (json.dumps(plans.summary(found), indent=1, allow_nan=False) + "\n").encode()),
         (PICTURE, drawn),
     ):
         try:
@@ -70,9 +82,10 @@ def write(found, folder, read=(), force=False):
     return written, warnings
 
 
-def _names(sources):
+def _names(sources: Sequence[str | None]) -> list[str | None]:
     """A name in the folder for each source, None without one; no two alike."""
-    names, taken = [], {JOB, PLAN, FEEDS, PICTURE, RESULT}
+    names: list[str | None] = []
+    taken = {JOB, PLAN, FEEDS, PICTURE, RESULT}
     for source in sources:
         if source is None:
             names.append(None)
@@ -87,11 +100,14 @@ def _names(sources):
     return names
 
 
-def check(job, folder, read=(), force=False):
+def check(
+    job: Job | Json, folder: Path | str, read: Iterable[Path | str] = (), force: bool = False
+) -> tuple[list[str | None], list[str | None]]:
     """Raises InputError where a plan of a job in ``folder`` would be written over what it must not be. Returns (the
     job's program files, None for poses; their names in the folder)."""
+    job = typed(job)
     folder = Path(folder)
-    sources = [program.get("file") for program in job["programs"]]
+    sources = [program.file for program in job.programs]
     names = _names(sources)
     read = [*read, *filter(None, sources)]
     inputs = {os.path.realpath(path): path for path in read}
@@ -113,7 +129,7 @@ def check(job, folder, read=(), force=False):
     return sources, names
 
 
-def _is_plan(path):
+def _is_plan(path: Path) -> bool:
     try:
         found = json.loads(path.read_bytes())
     except (OSError, ValueError, RecursionError):
@@ -121,7 +137,9 @@ def _is_plan(path):
     return isinstance(found, dict) and {"better", "rounds", "checked"} <= set(found)
 
 
-def _patched(found, number, source, output, planned):
+def _patched(
+    found: Plan, number: int, source: str, output: Path, planned: dict[str, Any]
+) -> tuple[dict[str, Any], InputError | None]:
     """(the job's entry of a program, why its file could not be written or None)."""
     wanted = changes(found, number)
     program = found.commands.job["programs"][number]
@@ -144,7 +162,7 @@ def _patched(found, number, source, output, planned):
     return entry, None
 
 
-def changes(found, number):
+def changes(found: Plan, number: int) -> list[dict[str, Any]]:
     """What ``patch`` is to change in a program's file: the feeds and forces that are not the file's any more."""
     commands, result = found.commands, []
     program = commands.job["programs"][number]
@@ -154,7 +172,9 @@ def changes(found, number):
     pressed = bool((found.factors[commands.program == number] != 1.0).any())
     for k in np.flatnonzero((commands.program == number) & moving):
         if differ[k] or "feed_mm_s" in program or (pressed and "force_N" in program):
-            change = {"line": int(commands.lines[int(np.argmax(commands.group == k))])}
+            change: dict[str, Any] = {
+                "line": int(commands.lines[int(np.argmax(commands.group == k))])
+            }
             change["speed_mm_s"] = float(found.new[k])
             if found.factors[k] != 1.0 or (pressed and "force_N" in program):
                 change["force_N"] = float(forces[k])
@@ -162,7 +182,7 @@ def changes(found, number):
     return result
 
 
-def feeds_csv(found):
+def feeds_csv(found: Plan) -> str:
     """Every command: program from 1, line, its first pose from 1, old and planned feed, mm/s, and force, N."""
     commands = found.commands
     before, after = (commands.force(f) for f in (np.ones(len(commands)), found.factors))

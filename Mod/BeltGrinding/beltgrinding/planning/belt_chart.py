@@ -1,8 +1,14 @@
 """A batch of parts over the life of its belts, as a picture: cut, feed and force, cost of each part."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Protocol, TypeAlias
+
 import numpy as np
 from PIL import Image, ImageDraw
 
+from ..base.kinds import Floats
 from ..inspection import picture
 
 WIDTH, ROW, LEFT, TOP, BOTTOM = 1400, 240, 110, 50, 60  # pixels
@@ -10,6 +16,9 @@ LETTERS, MARGIN = 22, 6  # pixels
 INK, GRID = (34, 38, 43), (215, 218, 222)
 COLOURS = ((31, 95, 168), (166, 61, 47))
 BELT = (235, 239, 244)
+
+Colour: TypeAlias = tuple[int, int, int]
+Lines: TypeAlias = Sequence[tuple[str, list[float]]]  # of a chart: what, and a value a part
 
 
 WORDS = {
@@ -23,10 +32,26 @@ WORDS = {
 }
 
 
+class Batch(Protocol):
+    """What is drawn of a ``belt_plan.BeltPlan``."""
+
+    @property
+    def rows(self) -> Sequence[Mapping[str, Any]]:
+        ...
+
+    @property
+    def cost(self) -> float:
+        ...
+
+    @property
+    def belts(self) -> int:
+        ...
+
+
 class _Pen:
     """Where and how large it is drawn; ``share``: of the size in the manual."""
 
-    def __init__(self, width, rows, share, top):
+    def __init__(self, width: int, rows: int, share: float, top: float) -> None:
         self.left, self.top, self.row, self.bottom = (share * v for v in (LEFT, top, ROW, BOTTOM))
         self.right, self.share = width - 20 * share, share
         self.image = Image.new(
@@ -34,15 +59,17 @@ class _Pen:
         )
         self.pen, self.font = ImageDraw.Draw(self.image), picture.font(int(LETTERS * share))
 
-    def text(self, x, y, text, fill=INK, right=False):
+    def text(self, x: float, y: float, text: str, fill: Colour = INK, right: bool = False) -> None:
         x -= self.length(text) if right else 0.0
         self.pen.text((x, y), text, font=self.font, fill=fill)
 
-    def length(self, text):
+    def length(self, text: str) -> float:
         return self.pen.textlength(text, font=self.font)
 
 
-def draw(found, words=None, width=WIDTH, share=1.0):
+def draw(
+    found: Batch, words: Mapping[str, str] | None = None, width: int = WIDTH, share: float = 1.0
+) -> bytes:
     """Bytes of a PNG of a ``BeltPlan``. ``words``: as ``WORDS``; ``width``: pixels; ``share``: of the size of letters and
     charts in the manual."""
     rows, words = found.rows, words or WORDS
@@ -74,7 +101,7 @@ def draw(found, words=None, width=WIDTH, share=1.0):
     return picture.png(np.asarray(pen.image))
 
 
-def _chart(pen, x, top, name, lines):
+def _chart(pen: _Pen, x: Floats, top: float, name: str, lines: Lines) -> None:
     most = _above(max((max(values) for _, values in lines if values), default=1.0))
     upper, lower = top + 34 * pen.share, top + pen.row - 16 * pen.share
     for share in (0.0, 0.5, 1.0):
@@ -95,7 +122,7 @@ def _chart(pen, x, top, name, lines):
             pen.pen.line(points, fill=colour, width=max(int(3 * pen.share), 2))
 
 
-def _above(value):
+def _above(value: float) -> float:
     """The next number whose half is short to write, too."""
     if not value > 0.0:
         return 1.0

@@ -6,26 +6,38 @@ of changing it. The cheapest sequence of belts for a number of parts is found by
 are left (Bellman, Dynamic Programming, 1957), which is exact: each belt begins as new.
 """
 
+from __future__ import annotations
+
 import csv
 import io
 import json
 import math
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
+from ..base import records
 from ..base.files import cannot_be_written, write_whole
+from ..base.kinds import Context, Json
 from ..engine import InputError, core
 from ..job import law as laws
+from ..job import settings
+from ..job.typed import typed
 from ..simulation import run as runs
 from . import rounds, step
 from .commands import Commands
 
-FOLLOW = ("feed", "force", "both")
+if TYPE_CHECKING:
+    from ..job.settings import Wear
+    from ..simulation.result import Result
+
 FILES = ("belt_plan.json", "parts.csv", "belt_plan.png")
 MOST_PARTS = 100_000
 NEAR = 1e-6  # of the removal, that a part may lack at a limit
+NEW = settings.Belt(work_J=0.0, removed_mm3=0.0, hours=0.0)
 INNER = 8  # how often a part's own wear is looked at, for its mean cut
 COLUMNS = (
     "part",
@@ -38,6 +50,8 @@ COLUMNS = (
     "cost",
     "new_belt",
 )
+
+Belt: TypeAlias = dict[str, float]  # the engine's: work, volume, time
 
 
 class Part(NamedTuple):
@@ -64,7 +78,7 @@ class Costs(NamedTuple):
 class BeltPlan(NamedTuple):
     """The cheapest batch."""
 
-    rows: list  # dicts of COLUMNS
+    rows: list[dict[str, Any]]  # dicts of COLUMNS
     cost: float
     seconds: float
     belts: int  # that are put on
@@ -72,18 +86,25 @@ class BeltPlan(NamedTuple):
     life: int  # parts that a fresh belt can grind within the limits
 
 
-def part_of(job, feed_min, force_max, follow, context=None):
+def part_of(
+    job: settings.Job | Json,
+    feed_min: float,
+    force_max: float,
+    follow: str,
+    context: Context = None,
+) -> tuple[Part, Result]:
     """(``Part`` of a validated job, its Result with a fresh belt). ``feed_min`` mm/s; ``force_max`` N. Raises InputError
     (no wear to follow, limits that the job itself breaks), Cancelled."""
-    machine = job["belt_machine"]
-    if job["law"]["wear"]["model"] == "none" or job["law"]["model"] in ("geometric", "hammann"):
+    job = typed(job)
+    machine = job.belt_machine
+    if job.law.wear.model == "none" or job.law.model in ("geometric", "hammann"):
         raise InputError(
             "planning.no_wear",
             "belt plan: {key} is {value}; give the law a wear, from measured grinds (beltgrind calibrate) or by hand",
             key="law.wear.model",
-            value=job["law"]["wear"]["model"],
+            value=job.law.wear.model,
         )
-    if follow != "feed" and machine["control"] != "force":
+    if follow != "feed" and machine.control != "force":
         raise InputError(
             "planning.no_force",
             "plan: {key}: forces are planned for machines under force control only",
@@ -96,8 +117,8 @@ def part_of(job, feed_min, force_max, follow, context=None):
             key="law.feed_exponent",
             value=step.feed_exponent(job),
         )
-    fresh = {**machine, "belt": {key: 0.0 for key in machine["belt"]}}
-    job = {**job, "belt_machine": fresh}
+    fresh = replace(machine, belt=NEW)
+    job = replace(job, belt_machine=fresh)
     result = runs.run(job, context)
     commands = Commands(job, rounds.validate({}))
     feeds = commands.feed()
@@ -129,9 +150,12 @@ def part_of(job, feed_min, force_max, follow, context=None):
     )
 
 
-def plan(job, part, costs, parts, context=None):
+def plan(
+    job: settings.Job | Json, part: Part, costs: Costs, parts: int, context: Context = None
+) -> BeltPlan:
     """The ``BeltPlan`` of a batch of ``parts`` of a validated job, whose belt's use is that of the first belt. Raises
     InputError where not even a fresh belt does one part, Cancelled."""
+    job = typed(job)
     context = context or core.RunContext()
     if not 1 <= parts <= MOST_PARTS:
         raise InputError(
@@ -144,10 +168,9 @@ def plan(job, part, costs, parts, context=None):
         raise InputError(
             "planning.costs", "belt plan: costs and times must be numbers, none below 0"
         )
-    wear = laws.engine_wear(job["law"])
-    new = {"work_J": 0.0, "removed_mm3": 0.0, "hours": 0.0}
-    fresh = _life(wear, part, new, costs, parts)
-    first = _life(wear, part, job["belt_machine"]["belt"], costs, parts)
+    wear = laws.engine_wear(job.law)
+    fresh = _life(wear, part, NEW, costs, parts)
+    first = _life(wear, part, job.belt_machine.belt, costs, parts)
     if not fresh:
         raise InputError(
             "planning.belt_too_short",
@@ -186,7 +209,7 @@ def plan(job, part, costs, parts, context=None):
     )
 
 
-def _until_worn_out(lasts, whole, changing, parts):
+def _until_worn_out(lasts: list[float], whole: list[float], changing: float, parts: int) -> float:
     cost, left, on = 0.0, parts, whole
     while left:
         count = min(left, len(on))
@@ -197,7 +220,9 @@ def _until_worn_out(lasts, whole, changing, parts):
     return cost
 
 
-def _rows(rows, parts, new_belt):
+def _rows(
+    rows: list[dict[str, Any]], parts: list[dict[str, Any]], new_belt: bool
+) -> list[dict[str, Any]]:
     """``rows`` with those of the parts of the next belt."""
     belt = rows[-1]["belt"] + 1 if rows else 1
     begun = len(rows)
@@ -213,9 +238,11 @@ def _rows(rows, parts, new_belt):
     ]
 
 
-def _life(wear, part, belt, costs, parts):
+def _life(
+    wear: Wear, part: Part, belt: settings.Belt, costs: Costs, parts: int
+) -> list[dict[str, Any]]:
     """Dicts of the parts that a belt grinds one after the other, as long as the limits let it."""
-    state, rows = laws.engine_belt(belt), []
+    state, rows = laws.engine_belt(records.plain(belt)), []
     nothing = {key: 0.0 for key in state}
     # What the job was simulated with: a fresh belt that wears over the part itself.
     usual = core.belt_remaining(wear, _used(nothing, part, 1.0, 1.0, 0.5))
@@ -224,8 +251,8 @@ def _life(wear, part, belt, costs, parts):
         if found is None:
             break
         feed, force, cut, state = found
-        curve = wear["curve"] if wear["model"] == "curve" else ()
-        used = state["volume" if wear["variable"] == "volume" else "work"]
+        curve = wear.curve if wear.model == "curve" else ()
+        used = state["volume" if wear.variable == "volume" else "work"]
         seconds = part.other_s + part.ground_s / feed
         rows.append(
             {
@@ -240,7 +267,9 @@ def _life(wear, part, belt, costs, parts):
     return rows
 
 
-def _one(wear, part, state, usual):
+def _one(
+    wear: Wear, part: Part, state: Belt, usual: float
+) -> tuple[float, float, float, Belt] | None:
     """(factor on feeds, factor on forces, mean cut, the belt's state after it) of one part; None beyond the limits.
     ``usual``: the mean cut that the factors are against."""
     cut = core.belt_remaining(wear, state)
@@ -257,7 +286,7 @@ def _one(wear, part, state, usual):
     return feed, force, cut, _used(state, part, feed, force, 1.0)
 
 
-def _used(state, part, feed, force, share):
+def _used(state: Belt, part: Part, feed: float, force: float, share: float) -> Belt:
     """The engine's belt after a share of a part."""
     return {
         "work": state["work"] + share * part.work_J * force / feed,
@@ -266,7 +295,7 @@ def _used(state, part, feed, force, share):
     }
 
 
-def summary(found, costs):
+def summary(found: BeltPlan, costs: Costs) -> dict[str, Any]:
     """The figures of a ``BeltPlan``, as JSON has them."""
     counts = np.bincount([row["belt"] for row in found.rows])[1:]
     return {
@@ -283,7 +312,13 @@ def summary(found, costs):
     }
 
 
-def write(found, costs, folder, words=None, replace=True):
+def write(
+    found: BeltPlan,
+    costs: Costs,
+    folder: Path | str,
+    words: Mapping[str, str] | None = None,
+    replace: bool = True,
+) -> None:
     """Writes ``FILES`` into a folder: figures, a line a part, chart; ``replace``: files that are there already. Raises
     InputError."""
     from . import belt_chart  # pictures are drawn only for files
@@ -297,7 +332,7 @@ def write(found, costs, folder, words=None, replace=True):
             file=folder / there[0],
         )
     contents = (
-        (json.dumps(summary(found, costs), indent=1) + "\n").encode(),
+        (json.dumps(summary(found, costs), indent=1, allow_nan=False) + "\n").encode(),
         table(found).encode(),
         belt_chart.draw(found, words),
     )
@@ -309,7 +344,7 @@ def write(found, costs, folder, words=None, replace=True):
         raise cannot_be_written(folder, error) from None
 
 
-def table(found):
+def table(found: BeltPlan) -> str:
     """A CSV of the batch, a line a part."""
     file = io.StringIO()
     rows = csv.DictWriter(file, COLUMNS, extrasaction="ignore", lineterminator="\n")

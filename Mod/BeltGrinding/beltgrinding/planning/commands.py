@@ -1,10 +1,19 @@
 """The commands of a job's programs whose feed can be planned: what has one feed in the program is one variable."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 
+from ..base import records
+from ..base.kinds import Array, Facts, Floats, Json
 from ..engine import InputError
 from ..job import poses
 from ..job.poses import program_name
+from ..job.settings import Job
+from ..job.typed import typed
 from ..presets import robot as robots
 
 
@@ -13,27 +22,31 @@ class Commands:
     file, for a line has one feed, however often it is run through and into however many poses its arc is cut. Poses
     that stand in the job have a feed each."""
 
-    def __init__(self, job, settings, sources=None):
+    def __init__(
+        self, job: Job | Json, settings: Json, sources: Sequence[str | None] | None = None
+    ) -> None:
         """``sources``: of each program the file whose lines its poses name, or None; by default those that the job
         names. Raises InputError for lines that no motion has."""
-        self.job = job
-        self.sources = sources or [program.get("file") for program in job["programs"]]
-        self.arrays = []
-        warnings = []
-        for k, program in enumerate(job["programs"]):
+        self.job: Json = records.plain(job)  # as data, which plans hand out
+        job = typed(job)
+        self.sources = sources or [program.file for program in job.programs]
+        self.arrays: list[dict[str, Array]] = []
+        warnings: Facts = []
+        for k, program in enumerate(job.programs):
             self.arrays.append(
                 poses.program_arrays(
                     program,
                     program_name(job, k),
                     warnings,
-                    robots.pose_function(job["robot"]),
-                    job["cell"]["holding"],
+                    robots.pose_function(self.job["robot"]),
+                    job.cell.holding,
                 )
             )
-        groups, programs = [], []
+        groups: list[int] = []
+        programs: list[int] = []
         for k, (source, arrays) in enumerate(zip(self.sources, self.arrays)):
             lines = arrays["lines"] if source else np.zeros(len(arrays["lines"]))
-            names = {}
+            names: dict[int, int] = {}
             for i, line in enumerate(lines.tolist()):
                 name = line if line > 0 else -1 - i
                 groups.append(names.setdefault(name, len(programs) + len(names)))
@@ -42,9 +55,7 @@ class Commands:
         self.program = np.array(programs)  # (commands,) from 0
         self.feeds = np.concatenate([a["feeds"] for a in self.arrays])  # (motions,) mm/s
         given = np.concatenate([a["forces"] for a in self.arrays])
-        self.forces = np.where(
-            given < 0, float(job["belt_machine"]["force_N"]), given
-        )  # (motions,) N
+        self.forces = np.where(given < 0, float(job.belt_machine.force_N), given)  # (motions,) N
         self.lines = np.concatenate([a["lines"] for a in self.arrays])
         self.rapid = np.concatenate([a["rapid"] for a in self.arrays])
         self.of_program = np.repeat(
@@ -56,10 +67,10 @@ class Commands:
             settings
         )  # (commands,) twice: least and greatest factor
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.program)
 
-    def _keep(self, wanted):
+    def _keep(self, wanted: Sequence[Json]) -> None:
         own = np.concatenate([np.arange(1, len(a["feeds"]) + 1) for a in self.arrays])
         for number, one in enumerate(wanted):
             what = "line" if one["first_line"] else "pose"
@@ -93,7 +104,7 @@ class Commands:
                 )
             self.kept[self.group[mine]] = True
 
-    def _force_range(self, settings):
+    def _force_range(self, settings: Json) -> tuple[Floats, Floats]:
         """Factors on the forces of commands: a program's greatest force may become what the settings allow, and all
         others change with it, so that ramps at the ends of passes stay ramps."""
         least, greatest = np.ones(len(self)), np.ones(len(self))
@@ -108,35 +119,35 @@ class Commands:
                     greatest[own] = max(1.0, settings["force_max_N"] / reference)
         return least, greatest
 
-    def presses(self):
+    def presses(self) -> bool:
         """Whether forces may change."""
         least, greatest = self.force_range
         return bool((greatest > least).any())
 
-    def force(self, factors):
+    def force(self, factors: Floats) -> Floats:
         """(commands,) N: the greatest of a command's motions, with factors (commands,)."""
         found = np.zeros(len(self))
         np.maximum.at(found, self.group, self.forces)
         return found * factors
 
-    def feed(self):
+    def feed(self) -> Floats:
         """(commands,) mm/s; that of its last motion that grinds, for a line that has several."""
         found = np.zeros(len(self))
         found[self.group[self.rapid]] = self.feeds[self.rapid]
         found[self.group[~self.rapid]] = self.feeds[~self.rapid]
         return found
 
-    def seconds(self, feeds):
+    def seconds(self, feeds: Floats) -> Floats:
         """(commands,) s that they take at feeds (commands,) mm/s, without acceleration; 0 of rapid motions."""
         return np.bincount(self.group, self._lengths(), len(self)) / np.maximum(feeds, 1e-9)
 
-    def motion_seconds(self, feeds):
+    def motion_seconds(self, feeds: Floats) -> Floats:
         """(commands,) s that the shortest motion of each takes."""
         found = np.full(len(self), np.inf)
         np.minimum.at(found, self.group, np.where(self.rapid, np.inf, self._lengths()))
         return np.where(np.isfinite(found), found, 0.0) / np.maximum(feeds, 1e-9)
 
-    def neighbours(self):
+    def neighbours(self) -> tuple[Array, Array, Floats]:
         """(first, second (pairs,) numbers of commands, way (pairs,) mm between the middles of their motions): of commands
         that follow each other without a rapid motion between them, each pair once."""
         way = self._lengths()
@@ -150,7 +161,7 @@ class Commands:
         np.minimum.at(between, which.reshape(-1), 0.5 * (way[:-1] + way[1:])[joined])
         return pairs[0], pairs[1], between
 
-    def _lengths(self):
+    def _lengths(self) -> Floats:
         """(motions,) mm, 0 of rapid ones."""
         lengths = [
             np.append(0.0, np.linalg.norm(np.diff(a["frames"][:, :3, 3], axis=0), axis=1))
@@ -158,20 +169,20 @@ class Commands:
         ]
         return np.where(self.rapid, 0.0, np.concatenate(lengths))
 
-    def with_feeds(self, feeds, factors=None):
+    def with_feeds(self, feeds: Floats, factors: Floats | None = None) -> dict[str, Any]:
         """A copy of the job, its programs given pose by pose, with feeds (commands,) mm/s on all but rapid motions,
         and ``factors`` (commands,) on the forces of those."""
         new = np.where(self.rapid, self.feeds, feeds[self.group])
         given = np.concatenate([a["forces"] for a in self.arrays])
         factor = np.ones(len(given)) if factors is None else factors[self.group]
         forces = np.where(self.rapid | (factor == 1.0), given, self.forces * factor)
-        job = {**self.job, "programs": []}
+        programs = []
         begin = 0
         for program, arrays in zip(self.job["programs"], self.arrays):
             end = begin + len(arrays["feeds"])
             kept = {name: program[name] for name in ("name", "unresolved") if name in program}
             changed = {"feeds": new[begin:end], "forces": forces[begin:end]}
             listed = poses.list_poses({**arrays, **changed})
-            job["programs"].append({**kept, "poses": listed})
+            programs.append({**kept, "poses": listed})
             begin = end
-        return job
+        return {**self.job, "programs": programs}

@@ -5,14 +5,21 @@ Passes that are tried are simulated with few rounds, coarsely where samples are 
 as the settings say. It is a search by hand's rules, no proof that nothing is better.
 """
 
+from __future__ import annotations
+
 import math
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..base import records
+from ..base.kinds import Context, Json, known
 from ..engine import InputError, core
 from ..inspection import verdict as verdicts
 from ..job import poses
+from ..job.settings import Job
+from ..job.typed import typed
 from ..raster import raster_path
 from ..simulation import convergence
 from . import reasons, rounds
@@ -34,13 +41,21 @@ FINAL = 0.5  # of the time: the last plan
 class Ground(NamedTuple):
     """Passes and their plan."""
 
-    settings: dict  # of the raster
-    laid: dict  # as ``raster_path.raster`` gives it
+    settings: Json  # of the raster
+    laid: dict[str, Any]  # as ``raster_path.raster`` gives it
     plan: rounds.Plan
-    tried: list  # of dicts: change, step_over_mm, repeats, run_out_mm, poses, in_tolerance, better
+    tried: list[
+        dict[str, Any]
+    ]  #: change, step_over_mm, repeats, run_out_mm, poses, in_tolerance, better
 
 
-def grind(job, raster_settings=None, settings=None, context=None, told=None):
+def grind(
+    job: Job | Json,
+    raster_settings: Json | None = None,
+    settings: Json | None = None,
+    context: Context = None,
+    told: Callable[[dict[str, Any]], object] | None = None,
+) -> Ground:
     """Lays passes on the faces of a validated job, whose own programs do not matter, and plans their feeds, and forces
     if the machine keeps a force: down to ``GENTLE`` of the job's where ``force_min_N`` is not given, never up unless
     ``force_max_N`` is. ``raster_settings``: where the search begins; ``settings``: of the plan; ``told(dict)``: as
@@ -48,10 +63,12 @@ def grind(job, raster_settings=None, settings=None, context=None, told=None):
 
     Returns a ``Ground``. Raises InputError, Cancelled.
     """
-    context = context or core.RunContext()
+    data = records.plain(job)
+    job, context = typed(data), context or core.RunContext()
     settings = _with_forces(job, rounds.validate(settings or {}))
-    best, tried = None, []
-    queue = [("first", raster_path.validate(raster_settings or {}))]
+    best: dict[str, Any] | None = None
+    tried: list[dict[str, Any]] = []
+    queue: list[tuple[str, Json]] = [("first", raster_path.validate(raster_settings or {}))]
     seen = set()
     while queue and len(tried) < TRIES:
         change, wanted = queue.pop(0)
@@ -62,7 +79,7 @@ def grind(job, raster_settings=None, settings=None, context=None, told=None):
         begun = len(tried) / TRIES * (1.0 - FINAL)
         part = context.part(begun, begun + (1.0 - FINAL) / TRIES)
         try:
-            one = _try(job, wanted, settings, part)
+            one = _try(data, wanted, settings, part)
         except InputError:
             if best is None:
                 raise
@@ -84,9 +101,10 @@ def grind(job, raster_settings=None, settings=None, context=None, told=None):
         if better:
             best = one
             queue = _others(one)
+    best = known(best)
     context.report(1.0 - FINAL)
     found = rounds.plan(
-        _with_path(job, best["laid"]),
+        _with_path(data, best["laid"]),
         settings,
         context.part(1.0 - FINAL, 1.0),
         told,
@@ -95,26 +113,26 @@ def grind(job, raster_settings=None, settings=None, context=None, told=None):
     return Ground(best["wanted"], best["laid"], found, tried)
 
 
-def _with_forces(job, settings):
-    machine = job["belt_machine"]
-    if machine["control"] == "force" and settings["force_min_N"] == 0.0:
-        settings = {**settings, "force_min_N": GENTLE * machine["force_N"]}
+def _with_forces(job: Job, settings: Json) -> Json:
+    machine = job.belt_machine
+    if machine.control == "force" and settings["force_min_N"] == 0.0:
+        settings = {**settings, "force_min_N": GENTLE * machine.force_N}
     return settings
 
 
-def _with_path(job, laid):
+def _with_path(data: Json, laid: Json) -> dict[str, Any]:
     """The job with the passes as its only program."""
     return {
-        **job,
+        **data,
         "programs": [{"name": "raster", "poses": poses.list_poses(laid), "unresolved": 0}],
     }
 
 
-def _try(job, wanted, settings, context):
-    laid = raster_path.raster(job, wanted, context.part(0.0, 0.2))
+def _try(data: Json, wanted: Json, settings: Json, context: core.RunContext) -> dict[str, Any]:
+    laid = raster_path.raster(data, wanted, context.part(0.0, 0.2))
     # The way is found once: other passes go the same.
     wanted = {**wanted, "along": laid["along"], "direction": list(laid["direction"])}
-    tried = rounds.settled(_with_path(job, laid), context)
+    tried = rounds.settled(_with_path(data, laid), context)
     if laid["area_mm2"] > MOST_SAMPLES * tried["sampling"]["spacing_mm"] ** 2:
         tried = convergence.scaled(tried, "coarse")
     plan = rounds.plan(tried, {**settings, **QUICK}, context.part(0.2, 1.0))
@@ -122,7 +140,7 @@ def _try(job, wanted, settings, context):
     return {"wanted": wanted, "laid": laid, "plan": plan, "in_tolerance": share}
 
 
-def _others(one):
+def _others(one: Json) -> list[tuple[str, Json]]:
     """[(what changes, settings)] that may mend what is out of tolerance, the likeliest first."""
     wanted, laid, shares = one["wanted"], one["laid"], one["plan"].why["shares"]
     found = []
@@ -148,7 +166,7 @@ def _others(one):
     return [(name, settings) for _, name, settings in sorted(found, key=lambda one: -one[0])]
 
 
-def _repeats(one):
+def _repeats(one: Json) -> int:
     """How often the passes must be run through so that what is not done at the least feed is."""
     plan, now = one["plan"], one["wanted"]["repeats"]
     field = plan.after.field

@@ -4,10 +4,15 @@ From the plan that brings most into tolerance, time is given a cost, the greates
 still keeps the share; what is simulated says how far the prediction may be trusted, and moves it.
 """
 
-import time
+from __future__ import annotations
 
-from ..simulation import run as runs
+from typing import TYPE_CHECKING
+
+from ..base.kinds import Json
 from . import step, sure
+
+if TYPE_CHECKING:
+    from .trials import Trial, Trials
 
 ROOM = 0.002  # of the area, given up for time where no share is asked for
 GAIN = 0.005  # of the time, that a round must save
@@ -17,48 +22,39 @@ PEAKS = 0.01  # of the limit of pressure, by which two runs may differ
 CAUTION = 0.5  # of what the prediction promised too much
 
 
-def wanted_share(settings, best):
+def wanted_share(settings: Json, best: Json) -> float:
     """The share of the area that must stay in tolerance."""
     return settings["wanted_share"] or max(sure.share(best) - ROOM, 0.0)
 
 
-def saves(figures, first, settings):
+def saves(figures: Json, first: Json, settings: Json) -> bool:
     """Whether a plan is faster than the job was, and as good as is asked for or as the job was."""
     least = min(settings["wanted_share"] or 1.0, sure.share(first))
     return sure.share(figures) >= least and figures["process_time_s"] < first["process_time_s"]
 
 
-def faster(commands, best, settings, rounds, told, context):
-    """``best`` (as ``rounds`` keeps its tries), or a faster one that has the share. Simulates ``rounds`` times at most;
-    ``rounds`` and ``told`` get each."""
-    wanted = wanted_share(settings, best["figures"])
-    if sure.share(best["figures"]) < wanted:
+def faster(trials: Trials, best: Trial) -> Trial:
+    """The ``Trial`` ``best``, or a faster one that has the share. Simulates ``rounds`` times at most."""
+    settings = trials.settings
+    wanted = wanted_share(settings, best.figures)
+    if sure.share(best.figures) < wanted:
         return best  # there is nothing to give away
-    feeds, factors, result = best["feeds"], best["factors"], best["result"]
     margin = 0.0
     for _ in range(settings["rounds"]):
-        begun = time.perf_counter()
-        found = _dearest(commands, result, feeds, factors, settings, context, wanted + margin)
+        found = _dearest(trials, best, wanted + margin)
         if found is None:
             break
-        new, forces, what = found
-        job = commands.with_feeds(new, forces)
-        tried = runs.run(job, context.part(1.0, 1.0), influence=True, shifts=True)
-        one = {**step.figures(tried, settings), **what, "seconds": time.perf_counter() - begun}
-        one["goal"] = "time"
-        rounds.append(one)
-        if told is not None:
-            told(one)
-        before = best["figures"]["process_time_s"]
-        over = one.get("over_limit", 0.0) - best["figures"].get("over_limit", 0.0)
+        feeds, forces, what = found
+        trial = trials.tell(trials.simulate(feeds, forces), **what, goal="time")
+        one, before = trial.figures, best.figures["process_time_s"]
+        over = one.get("over_limit", 0.0) - best.figures.get("over_limit", 0.0)
         if over <= PEAKS and sure.share(one) >= wanted and one["process_time_s"] < before:
-            best["result"].influence = None
-            best = {"figures": one, "feeds": new, "factors": forces, "result": tried, "job": job}
-            feeds, factors, result = new, forces, tried
+            trials.forget(best)
+            best = trial
             if one["process_time_s"] > (1.0 - GAIN) * before:
                 break
         else:
-            tried.influence = None
+            trials.forget(trial)
         # What was promised too much is asked for beyond the share from now on.
         margin = max(0.0, margin + CAUTION * (what["predicted_in_tolerance"] - sure.share(one)))
         if wanted + margin > 1.0:
@@ -66,15 +62,16 @@ def faster(commands, best, settings, rounds, told, context):
     return best
 
 
-def _dearest(commands, result, feeds, factors, settings, context, wanted):
+def _dearest(trials: Trials, best: Trial, wanted: float) -> step.Step | None:
     """The step (as ``step.following`` gives it) for the greatest cost of time with which the prediction keeps the
     share; None if none does."""
-    low, high, best = LEAST, MOST, None
+    low, high, dearest = LEAST, MOST, None
+    now = (trials.commands, best.result, best.feeds, best.factors, trials.settings, trials.context)
     for _ in range(SEARCHES):
         cost = (low * high) ** 0.5
-        found = step.following(commands, result, feeds, factors, settings, context, cost)
+        found = step.following(*now, cost)
         if found[2]["predicted_in_tolerance"] >= wanted:
-            low, best = cost, found
+            low, dearest = cost, found
         else:
             high = cost
-    return best
+    return dearest

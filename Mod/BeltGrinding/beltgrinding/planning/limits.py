@@ -6,9 +6,21 @@ left over is exact: no value is more than its neighbours allow, by sweeps along 
 profiles are found (Bobrow, Dubowsky and Gibson, Int. J. Robotics Research 4, 1985).
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, TypeAlias
+
 import numpy as np
 
+from ..base.kinds import Array, Floats, Json, known
 from ..engine import InputError
+from ..job.settings import Job
+from ..job.typed import typed
+
+if TYPE_CHECKING:
+    from ..simulation.result import Result
+    from .commands import Commands
 
 LIGHT = 1e-4  # of the greatest weight: of motions that remove next to nothing
 ITERATIONS, LINEARISED = 2000, 50
@@ -18,8 +30,12 @@ AT, EXACT = 1e-3, 1e-6  # relative, of a limit
 BELOW = 1.0 - 1e-3  # of the limit of pressure, to which what is above it is brought
 YIELDING = 0.5  # least exponent with which pressure follows a lowered force: that of a line contact
 
+# Two commands each (pairs,), and a number of both (pairs,).
+Edges: TypeAlias = "tuple[Array, Array, Floats]"
+Allowed: TypeAlias = Callable[[float, float], float]  # of a value and mm: the neighbour's
 
-def refuse(settings):
+
+def refuse(settings: Json) -> None:
     """Raises InputError for limits that contradict each other."""
     if settings["levels"] and (settings["feed_change_mm_s_mm"] or settings["acceleration_mm_s2"]):
         raise InputError(
@@ -32,7 +48,7 @@ def refuse(settings):
         )
 
 
-def feeds(commands, wanted, weight, settings):
+def feeds(commands: Commands, wanted: Floats, weight: Floats, settings: Json) -> Floats:
     """(commands,) mm/s: the wanted feeds, changed where they would change too fast from motion to motion. Between
     motions that must not be changed nothing is. ``weight`` (commands,): what a relative error of each costs.
     """
@@ -41,19 +57,19 @@ def feeds(commands, wanted, weight, settings):
         return wanted
     first, second, way = commands.neighbours()
 
-    def step(values):
+    def step(values: Floats) -> Floats | float:
         by_way = per_mm * way if per_mm else np.inf
         if acceleration:
             by_way = np.minimum(by_way, 2.0 * acceleration * way / (values[first] + values[second]))
         return by_way
 
-    def up(value, d):
+    def up(value: float, d: float) -> float:
         by_way = value + per_mm * d if per_mm else np.inf
         return (
             min(by_way, (value * value + 2.0 * acceleration * d) ** 0.5) if acceleration else by_way
         )
 
-    def down(value, d):
+    def down(value: float, d: float) -> float:
         by_way = value - per_mm * d if per_mm else 0.0
         return (
             max(by_way, max(value * value - 2.0 * acceleration * d, 0.0) ** 0.5)
@@ -71,7 +87,9 @@ def feeds(commands, wanted, weight, settings):
     return _exact(commands, np.where(commands.kept, wanted, near), (first, second, way), up, down)
 
 
-def factors(commands, wanted, weight, feeds, settings):
+def factors(
+    commands: Commands, wanted: Floats, weight: Floats, feeds: Floats, settings: Json
+) -> Floats:
     """(commands,) the wanted factors on forces, changed where forces would change too fast. A step that the program has
     itself stays as great as it is at most. ``weight``: as for ``feeds``."""
     own = commands.force(np.ones(len(commands)))
@@ -83,7 +101,7 @@ def factors(commands, wanted, weight, feeds, settings):
     return _forces_within(commands, own, near, wanted, (first, second, step))
 
 
-def _force_steps(commands, own, feeds, settings):
+def _force_steps(commands: Commands, own: Floats, feeds: Floats, settings: Json) -> Edges:
     """(first, second (pairs,) commands, N (pairs,) by which their forces may differ)."""
     first, second, _ = commands.neighbours()
     seconds = commands.motion_seconds(feeds)
@@ -91,14 +109,16 @@ def _force_steps(commands, own, feeds, settings):
     return first, second, np.maximum(step, abs(own[first] - own[second]))
 
 
-def _forces_within(commands, own, near, wanted, edges):
+def _forces_within(
+    commands: Commands, own: Floats, near: Floats, wanted: Floats, edges: Edges
+) -> Floats:
     """(commands,) factors: the forces ``near``, the greater of two that are too far apart lowered."""
     given = _exact(commands, near, edges, lambda v, d: v + d, lambda v, d: v - d)
     least = commands.force_range[0] * own
     return np.where(own > 0.0, np.maximum(given, least) / np.maximum(own, 1e-300), wanted)
 
 
-def bound(commands, feeds, factors, settings):
+def bound(commands: Commands, feeds: Floats, factors: Floats, settings: Json) -> Array:
     """(commands,) bool: the feed or the force could not differ more from a neighbour's."""
     first, second, used = _used(commands, feeds, factors, settings)
     at, found = used >= 1.0 - AT, np.zeros(len(commands), dtype=bool)
@@ -106,13 +126,13 @@ def bound(commands, feeds, factors, settings):
     return found & ~commands.kept
 
 
-def beyond(commands, feeds, factors, settings):
+def beyond(commands: Commands, feeds: Floats, factors: Floats, settings: Json) -> int:
     """Number of places where feed or force change faster than they may: those of a program that breaks the limits
     itself, or of motions that must not be changed."""
     return int((_used(commands, feeds, factors, settings)[2] > 1.0 + EXACT).sum())
 
 
-def _used(commands, feeds, factors, settings):
+def _used(commands: Commands, feeds: Floats, factors: Floats, settings: Json) -> Edges:
     """(first, second (pairs,) commands, share (pairs,) of the limits that the change between them uses)."""
     first, second, length = commands.neighbours()
     one, other, length = feeds[first], feeds[second], np.maximum(length, 1e-12)
@@ -130,7 +150,14 @@ def _used(commands, feeds, factors, settings):
     return first, second, used
 
 
-def _nearest(wanted, weight, kept, first, second, step):
+def _nearest(
+    wanted: Floats,
+    weight: Floats,
+    kept: Array,
+    first: Array,
+    second: Array,
+    step: Callable[[Floats], Floats | float],
+) -> Floats:
     """The profile nearest to a wanted one, nearly within the limits: of each pair's values, no further apart than
     ``step(values)`` (pairs,)."""
     free = ~(kept[first] & kept[second])
@@ -158,9 +185,10 @@ def _nearest(wanted, weight, kept, first, second, step):
     return np.maximum(values, 1e-6)
 
 
-def _colours(first, second):
+def _colours(first: Array, second: Array) -> list[Array]:
     """Lists of pairs of which no two of a list share a command."""
-    taken, lists = {}, []
+    taken: dict[int, set[int]] = {}
+    lists: list[list[int]] = []
     for k, (a, b) in enumerate(zip(first.tolist(), second.tolist())):
         used = taken.setdefault(a, set()), taken.setdefault(b, set())
         colour = next(c for c in range(len(lists) + 1) if c not in used[0] and c not in used[1])
@@ -172,20 +200,25 @@ def _colours(first, second):
     return [np.array(one) for one in lists]
 
 
-def _exact(commands, near, edges, up, down):
+def _exact(commands: Commands, near: Floats, edges: Edges, up: Allowed, down: Allowed) -> Floats:
     """The largest profile (commands,) below a near one of which no value is above ``up(value, d)`` or below
     ``down(value, d)`` of a neighbour's; those of commands that are kept stay, and what is beside them yields.
     """
-    edges = list(zip(*(one.tolist() for one in edges)))
+    pairs = list(zip(*(one.tolist() for one in edges)))
     kept = commands.kept
-    floor = _sweep(np.where(kept, near, -np.inf), edges, down, max)
-    ceiling = _sweep(np.where(kept, near, np.inf), edges, up, min)
+    floor = _sweep(np.where(kept, near, -np.inf), pairs, down, max)
+    ceiling = _sweep(np.where(kept, near, np.inf), pairs, up, min)
     below = np.clip(near, floor, np.maximum(ceiling, floor))
-    found = np.maximum(_sweep(below, edges, up, min), floor)
+    found = np.maximum(_sweep(below, pairs, up, min), floor)
     return np.where(kept, near, found)
 
 
-def _sweep(values, edges, allowed, nearest):
+def _sweep(
+    values: Floats,
+    edges: list[tuple[int, int, float]],
+    allowed: Allowed,
+    nearest: Callable[[float, float], float],
+) -> Floats:
     found = values.tolist()
     for _ in range(SWEEPS):
         changed = False
@@ -202,9 +235,9 @@ def _sweep(values, edges, allowed, nearest):
     return np.array(found)
 
 
-def peaks(result, commands):
+def peaks(result: Result, commands: Commands) -> Floats:
     """(commands,) MPa: the greatest pressure of each command's motions."""
-    steps = result.steps
+    steps = known(result.steps)
     begin = np.cumsum([0] + [len(one["feeds"]) for one in commands.arrays])
     motions = begin[np.asarray(steps["program"], dtype=int)] + np.asarray(steps["pose"], dtype=int)
     found = np.zeros(len(commands))
@@ -212,18 +245,19 @@ def peaks(result, commands):
     return found
 
 
-def greatest_pressure(job, settings):
+def greatest_pressure(job: Job | Json, settings: Json) -> float:
     """MPa, by the settings or else the law; inf: no limit of pressure, nor of pressure times belt speed, or no force may
     change."""
+    job = typed(job)
     if not settings["force_min_N"] and not settings["force_max_N"]:
         return np.inf
-    law, speed = job["law"], job["belt_machine"]["belt_speed_m_s"]
-    most = settings["pressure_max_MPa"] or law["pressure_limit_MPa"] or np.inf
-    heat = settings["heat_max_MPa_m_s"] or law["heat_limit_MPa_m_s"]
+    law, speed = job.law, job.belt_machine.belt_speed_m_s
+    most = settings["pressure_max_MPa"] or law.pressure_limit_MPa or np.inf
+    heat = settings["heat_max_MPa_m_s"] or law.heat_limit_MPa_m_s
     return min(most, heat / speed) if heat and speed > 0.0 else most
 
 
-def greatest_factors(result, commands, factors, settings):
+def greatest_factors(result: Result, commands: Commands, factors: Floats, settings: Json) -> Floats:
     """(commands,) up to which the factors on forces keep the limit of pressure: a raised force raises the pressure no more
     than in proportion, a lowered one lowers it with its square root at least."""
     most = greatest_pressure(result.job, settings)
@@ -233,7 +267,9 @@ def greatest_factors(result, commands, factors, settings):
     return factors * np.where(room < 1.0, room ** (1.0 / YIELDING), room)
 
 
-def below_pressure(result, commands, feeds, factors, settings):
+def below_pressure(
+    result: Result, commands: Commands, feeds: Floats, factors: Floats, settings: Json
+) -> Floats:
     """(commands,) factors on forces, lowered where a simulation found a pressure above the limit, and beside that as far
     as the limit on their change asks."""
     room = greatest_pressure(result.job, settings) / np.maximum(peaks(result, commands), 1e-9)
@@ -247,10 +283,10 @@ def below_pressure(result, commands, feeds, factors, settings):
     return _forces_within(commands, own, own * force, force, edges)
 
 
-def figures(result, settings):
+def figures(result: Result, settings: Json) -> dict[str, float]:
     """``peak_pressure_MPa``, and by which share it is ``over_limit``; empty where nothing limits it."""
     most = greatest_pressure(result.job, settings)
     if most == np.inf:
         return {}
-    peak = float(np.max(result.steps["peak_pressure"], initial=0.0))
+    peak = float(np.max(known(result.steps)["peak_pressure"], initial=0.0))
     return {"peak_pressure_MPa": peak, "over_limit": max(0.0, peak / most - 1.0)}

@@ -1,16 +1,24 @@
 """A plan as a picture: the part before and as planned, in the colours of the deviation, and why what is out of
 tolerance stays so."""
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from PIL import Image, ImageDraw
 
+from ..base.kinds import Array, Context
 from ..engine import core
 from ..inspection import picture
 from ..job.tolerances import colour_scale
+from ..job.typed import typed
 from ..job.workpiece import read_design
 from . import reasons
+
+if TYPE_CHECKING:
+    from .rounds import Plan
 
 WIDTH = 800  # pixels of one of the pictures side by side
 LETTERS, ROW = 24, 36  # pixels
@@ -48,15 +56,15 @@ WORDS = {
 class Pictures(NamedTuple):
     """(rows, columns, 3) uint8, sRGB, of the side that shows most of the ground faces, and of the other."""
 
-    before: list
-    after: list
-    why: list
+    before: list[Array]
+    after: list[Array]
+    why: list[Array]
 
 
-def draw(found, context=None):
+def draw(found: Plan, context: Context = None) -> Pictures:
     """``Pictures`` of a ``Plan``. Raises InputError, Cancelled."""
-    job = found.job
-    shape = read_design(job["design"], context)
+    job = typed(found.job)
+    shape = read_design(job.design, context)
     scale = colour_scale(job)
     states = found.why["state"]
     colours = np.full(len(states), INSIDE, dtype=np.uint32)
@@ -64,28 +72,30 @@ def draw(found, context=None):
         colours[states == state] = colour
     after = found.after.field
 
-    def sides(field, colours):
+    def sides(field: core.HeightField, colours: Array) -> list[Array]:
         views = picture.Studio(field, colours, shape, context).both(context)
         return [_small(view.pixels) for view in views]
 
-    return Pictures(
-        *(sides(one, core.deviation_colours(one, *scale)) for one in (found.before.field, after)),
-        sides(after, colours),
+    before, planned = (
+        sides(one, core.deviation_colours(one, *scale)) for one in (found.before.field, after)
     )
+    return Pictures(before, planned, sides(after, colours))
 
 
-def _small(pixels):
+def _small(pixels: Array) -> Array:
     image = Image.fromarray(pixels)
     rows = max(round(image.height * WIDTH / image.width), 1)
     return np.asarray(image.resize((WIDTH, rows), Image.LANCZOS))
 
 
-def strip(pictures):
+def strip(pictures: Pictures) -> bytes:
     """Bytes of a PNG: the side that shows most, before, as planned and why, from left to right."""
     return picture.png(np.hstack([side[0] for side in pictures]))
 
 
-def composed(pictures, shares, words=None):
+def composed(
+    pictures: Pictures, shares: Mapping[str, float], words: Mapping[str, str] | None = None
+) -> bytes:
     """Bytes of a PNG: before, as planned and why from left to right, the two sides one below the other, and what the
     colours of the reasons say. ``shares``: of the area, as ``reasons.find`` has them; ``words``: as ``WORDS``.
     """

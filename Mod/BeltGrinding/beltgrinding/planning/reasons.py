@@ -1,13 +1,23 @@
 """Why a place stays out of tolerance under a plan."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
+from ..base.kinds import Array, Context, Floats, Json, known
 from ..engine import InputError, core
 from ..inspection import verdict as verdicts
+from ..job.typed import typed
 from ..job.workpiece import read_design
 from ..raster import raster_path, reachable
 from ..raster.clearing import Clearing
 from . import limits
+
+if TYPE_CHECKING:
+    from ..simulation.result import Result
+    from .commands import Commands
 
 GOOD, NOT_REACHED, BORDER, SLOWEST, FASTEST, KEPT, SHARED, NO_ROOM, PRESSURE, CHANGE = range(10)
 FRINGE = 10
@@ -31,10 +41,17 @@ PLACES = 400  # that are looked at: does the wheel fit?
 LEAST = 5e-4  # of the area
 
 
-def find(result, commands, feeds, factors, settings, context=None):
+def find(
+    result: Result,
+    commands: Commands,
+    feeds: Floats,
+    factors: Floats,
+    settings: Json,
+    context: Context = None,
+) -> dict[str, Any]:
     """dict(state (samples,) of the above, reached (samples,) bool: some motion removes something, shares: {word: of the
     area, where it is out of tolerance})."""
-    field, influence = result.field, result.influence
+    field, influence = result.field, known(result.influence)
     lower, upper = verdicts.limits(result.job, field)
     height, areas = np.asarray(field.height, dtype=float), np.asarray(field.areas, dtype=float)
     seen = (np.asarray(field.flags) & core.MISSED) == 0
@@ -43,7 +60,7 @@ def find(result, commands, feeds, factors, settings, context=None):
     samples, depth = influence.sample.astype(int), influence.depth.astype(float)
     total = np.bincount(samples, depth, len(height))
 
-    def share(commands_):
+    def share(commands_: Array) -> Floats:
         """(samples,) of what was removed, by motions of these commands."""
         mine = commands_[commands.group][motions]
         return np.bincount(samples, depth * mine, len(height)) / np.maximum(total, 1e-300)
@@ -78,7 +95,7 @@ def find(result, commands, feeds, factors, settings, context=None):
     return {"state": state, "reached": total > 0.0, "shares": shares}
 
 
-def _half_width(influence, areas):
+def _half_width(influence: core.Influence, areas: Floats) -> float:
     """mm, of a motion's contact: the radius of a disc as large as where it removes half of its most; the median."""
     motions = np.repeat(np.arange(len(influence)), np.diff(influence.first.astype(int)))
     most = np.zeros(len(influence))
@@ -88,7 +105,7 @@ def _half_width(influence, areas):
     return float(np.sqrt(np.median(pressed[pressed > 0.0]) / np.pi))
 
 
-def _beside(field, places, others, reach):
+def _beside(field: core.HeightField, places: Array, others: Array, reach: float) -> Array:
     """(places,) bool: within ``reach`` mm of one of the samples ``others``."""
     points = np.asarray(field.points, dtype=float)
     low, high = points[places].min(axis=0) - reach, points[places].max(axis=0) + reach
@@ -98,12 +115,13 @@ def _beside(field, places, others, reach):
     return reachable.nearest_distance(points[places], points[others[within]]) <= reach
 
 
-def _without_room(job, field, places, context):
+def _without_room(job: Json, field: core.HeightField, places: Array, context: Context) -> Array:
     """Those of samples ``places`` where the undeformed wheel, leaned by up to the raster paths' default, fits no way; as the
     nearest of ``PLACES`` that are looked at. None where that cannot be known."""
+    read = typed(job)
     try:
-        shape = read_design(job["design"], context)
-        clearing = Clearing(job, shape, raster_path.validate({}), [], context)
+        shape = read_design(read.design, context)
+        clearing = Clearing(read, shape, raster_path.validate({}), [], context)
     except InputError:
         return places[:0]
     if clearing.blind:
@@ -115,7 +133,7 @@ def _without_room(job, field, places, context):
     return places[~fits[reachable.nearest(points, points[some])]]
 
 
-def _near(field, border):
+def _near(field: core.HeightField, border: Array) -> Array:
     """(n,) bool: within some samples of one on a border."""
     points = np.asarray(field.points)
     if not border.any():

@@ -7,21 +7,30 @@ within the limits of feed. The contact changes with the surface, so that the fig
 rounds, as Gauss and Newton's. What is told is not what was predicted, but what the last simulation found.
 """
 
+from __future__ import annotations
+
 import math
-import time
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..base import schemas
+from ..base import records, schemas
+from ..base.kinds import Array, Context, Floats, Json, known
 from ..engine import InputError, core
-from ..inspection import verdict as verdicts
 from ..job import resolution, spacing
+from ..job.settings import Job
+from ..job.typed import typed
 from ..job.workpiece import check_faces, read_design
 from ..simulation import convergence, run as runs
 from . import least_time, levels, limits, reasons, sure
 from .commands import Commands
 from .step import SAME, feed_exponent, figures, following
+from .trials import Trials
+
+if TYPE_CHECKING:
+    from ..simulation.result import Result
+    from .trials import Trial
 
 STEEPEST = 0.95  # exponent of the feed in the law, from which on the feed decides nothing
 FEEDS_ONLY = 2  # rounds, in which forces change where feeds are at their limits: larger steps than both at once
@@ -38,45 +47,55 @@ PEAKS = 0.01  # of the limit of pressure, by which two runs may differ
 class Plan(NamedTuple):
     """What was planned."""
 
-    job: dict  # the job with the planned feeds, its programs pose by pose
-    before: object  # simulation Result of the job as it was
-    after: object  # of the planned one; the same as ``before`` if nothing better was found
-    rounds: list  # dicts: in_tolerance (share), rms_mm, process_time_s, predicted_in_tolerance, residual, seconds
+    job: dict[str, Any]  # the job with the planned feeds, its programs pose by pose
+    before: Result  # of the job as it was
+    after: Result  # of the planned one; the same as ``before`` if nothing better was found
+    rounds: list[
+        dict[str, Any]
+    ]  # dicts: in_tolerance (share), rms_mm, process_time_s, predicted_in_tolerance, residual, seconds
     better: bool
     commands: Commands
-    old: np.ndarray  # (commands,) mm/s
-    new: np.ndarray  # (commands,) mm/s
-    factors: np.ndarray  # (commands,) on the forces
-    why: dict  # as ``reasons.find``
-    checked: dict  # figures of the same job at half the spacing and step, before and after; {}: not asked for
-    settings: dict  # with all defaults
+    old: Floats  # (commands,) mm/s
+    new: Floats  # (commands,) mm/s
+    factors: Floats  # (commands,) on the forces
+    why: dict[str, Any]  # as ``reasons.find``
+    # Figures of the same job at half the spacing and step, before and after; {}: not asked for.
+    checked: dict[str, Any]
+    settings: dict[str, Any]  # with all defaults
 
 
-def schema():
+def schema() -> dict[str, Any]:
     """The JSON Schema of the settings, as a dict."""
     return schemas.schema("plan")
 
 
-def validate(settings):
+def validate(settings: Json) -> dict[str, Any]:
     """A copy of ``settings`` with all defaults filled in. Raises InputError naming the key."""
-    settings = schemas.checked(settings, schema(), "plan")
+    given: dict[str, Any] = schemas.checked(settings, schema(), "plan")
     for low, high, bounded in (
         ("feed_min_mm_s", "feed_max_mm_s", True),
-        ("force_min_N", "force_max_N", settings["force_max_N"] > 0.0),
+        ("force_min_N", "force_max_N", given["force_max_N"] > 0.0),
     ):
-        if bounded and settings[low] > settings[high]:
+        if bounded and given[low] > given[high]:
             raise InputError(
                 "planning.limits",
                 "{key}: {least:g} is above {other}, {most:g}",
                 key=low,
-                least=settings[low],
+                least=given[low],
                 other=high,
-                most=settings[high],
+                most=given[high],
             )
-    return settings
+    return given
 
 
-def plan(job, settings=None, context=None, told=None, sources=None, start=None):
+def plan(
+    job: Job | Json,
+    settings: Json | None = None,
+    context: Context = None,
+    told: Callable[[dict[str, Any]], object] | None = None,
+    sources: Sequence[str | None] | None = None,
+    start: tuple[Floats, Floats] | None = None,
+) -> Plan:
     """Plans the feeds of a validated job's programs. ``settings``: Resources/schema/plan.schema.json;
     ``told(round)``: is called after each round with its dict; ``sources``: as ``Commands`` takes them; ``start``: (feeds, factors on forces), a value a command, that the first round
     tries in place of planning, from an earlier ``Plan`` of the same programs.
@@ -85,109 +104,114 @@ def plan(job, settings=None, context=None, told=None, sources=None, start=None):
     feeds are given back, and ``better`` is false. Raises InputError (no tolerance, no stock, a tool that no feed
     matters to, limits that contradict each other), Cancelled.
     """
+    data = records.plain(job)
     settings = validate(settings or {})
     context = context or core.RunContext()
+    job = typed(data)
     _refuse(job, settings)
     sure.refuse(job, settings)
     limits.refuse(settings)
-    whole_job = resolution.with_mode(settled(job, context), resolution.FULL)
+    whole_job = resolution.with_mode(settled(data, context), resolution.FULL)
     searched = resolution.with_mode(whole_job, settings["search_resolution"])
     commands = Commands(searched, settings, sources)
     old = commands.feed()
     tries = settings["rounds"] + 1
     whole = tries + (CHECKS if settings["check"] else 0.0)
-    feeds, factors, rounds, best = old, np.ones(len(commands)), [], None
-    before, stalled, reach = None, 0, 1.0
-    with_forces = commands.presses()
-    for number in range(tries):
-        begun = time.perf_counter()
-        part = context.part(number / whole, (number + 1) / whole)
-        tried = commands.with_feeds(feeds, factors)
-        result = runs.run(tried, part, influence=True, shifts=True, forces=with_forces)
-        one = figures(result, settings)
-        rounds.append(one)
-        if before is None:
-            _refuse_without_stock(result)
-        before = before or result
-        stalled = 0 if best is None or _gains(one, best["figures"], settings) else stalled + 1
-        if best is None or _better(one, best["figures"], settings):
-            if best is not None and best["result"] is not before:
-                best["result"].influence = best["result"].force_influence = None
-            best = _tried(one, feeds, factors, result, tried)
-            reach = min(1.0, FARTHER * reach)
-        else:
-            result.influence = result.force_influence = None
-            reach *= NEARER_BY
-        ends = number + 1 == tries or stalled >= STALLED
-        if number == 0 and start is not None and not ends:
-            feeds, factors = start
-        elif not ends:
-            feeds, factors, found = following(
-                commands,
-                best["result"],
-                best["feeds"],
-                best["factors"],
-                settings,
-                context,
-                forces=with_forces and number >= FEEDS_ONLY,
-                reach=reach,
-            )
-            one.update(found)
-        one["seconds"] = time.perf_counter() - begun
-        if told is not None:
-            told(one)
-        if ends:
-            break
+    trials = Trials(commands, settings, told, context)
+    best = _by_rounds(trials, old, start, tries, whole)
     if settings["goal"] == "time":
-        best = least_time.faster(commands, best, settings, rounds, told, context)
+        best = least_time.faster(trials, best)
     if settings["levels"]:
-        best = _in_levels(commands, best, settings, rounds, told, context)
-    first = rounds[0]
+        best = _in_levels(trials, best)
     if settings["search_resolution"] != resolution.FULL:
-        commands = Commands(whole_job, settings, sources)
-        before, first, best = _in_full(commands, best, old, settings, rounds, told, context)
-    best = _below_pressure(commands, best, settings, rounds, told, context)
-    better = _better(best["figures"], first, settings) or (
-        settings["goal"] == "time" and least_time.saves(best["figures"], first, settings)
+        trials.begin(Commands(whole_job, settings, sources))
+        trials.tell(trials.simulate(old, np.ones(len(old))))
+        best = trials.tell(trials.simulate(best.feeds, best.factors))
+    best = _below_pressure(trials, best)
+    first = known(trials.first)
+    better = _better(best.figures, first.figures, settings) or (
+        settings["goal"] == "time" and least_time.saves(best.figures, first.figures, settings)
     )
     if not better:
-        best = _tried(first, old, np.ones(len(commands)), before, commands.with_feeds(old))
+        best = first
     why = reasons.find(
-        best["result"], commands, best["feeds"], best["factors"], settings, context.part(1.0, 1.0)
+        best.result, trials.commands, best.feeds, best.factors, settings, context.part(1.0, 1.0)
     )
     checked = {}
     if settings["check"]:
-        done = len(rounds) / whole
-        jobs = {"before": commands.with_feeds(old), "after": best["job"]}
-        for k, (name, one) in enumerate(jobs.items()):
+        done = len(trials.rounds) / whole
+        for k, (name, one) in enumerate({"before": first, "after": best}.items()):
             part = context.part(done + (1 - done) * k / 2, done + (1 - done) * (k + 1) / 2)
-            fine = runs.run(convergence.scaled(one, "fine"), part, shifts=True)
+            fine = runs.run(convergence.scaled(one.job, "fine"), part, shifts=True)
             checked[name] = figures(fine, settings)
     context.report(1.0)
     return Plan(
-        best["job"],
-        before,
-        best["result"],
-        rounds,
+        best.job,
+        first.result,
+        best.result,
+        trials.rounds,
         better,
-        commands,
+        trials.commands,
         old,
-        best["feeds"],
-        best["factors"],
+        best.feeds,
+        best.factors,
         why,
         checked,
         settings,
     )
 
 
-def _tried(figures, feeds, factors, result, job):
-    return {"figures": figures, "feeds": feeds, "factors": factors, "result": result, "job": job}
+def _by_rounds(
+    trials: Trials, old: Floats, start: tuple[Floats, Floats] | None, tries: int, whole: float
+) -> Trial:
+    """The best ``Trial`` of at most ``tries``: simulates, plans from the best so far, and simulates again, as long as
+    that leads on. ``start``: as in ``plan``; ``whole``: how many simulations' time all of the planning takes.
+    """
+    commands, settings, context = trials.commands, trials.settings, trials.context
+    feeds, factors = old, np.ones(len(commands))
+    best: Trial | None = None
+    stalled, reach = 0, 1.0
+    with_forces = commands.presses()
+    for number in range(tries):
+        part = context.part(number / whole, (number + 1) / whole)
+        trial = trials.simulate(feeds, factors, part, with_forces)
+        one = trial.figures
+        if number == 0:
+            _refuse_without_stock(trial.result)
+        stalled = 0 if best is None or _gains(one, best.figures, settings) else stalled + 1
+        if best is None or _better(one, best.figures, settings):
+            if best is not None:
+                trials.forget(best)
+            best = trial
+            reach = min(1.0, FARTHER * reach)
+        else:
+            trials.forget(trial)
+            reach *= NEARER_BY
+        ends = number + 1 == tries or stalled >= STALLED
+        found: dict[str, Any] = {}
+        if number == 0 and start is not None and not ends:
+            feeds, factors = start
+        elif not ends:
+            feeds, factors, found = following(
+                commands,
+                best.result,
+                best.feeds,
+                best.factors,
+                settings,
+                context,
+                forces=with_forces and number >= FEEDS_ONLY,
+                reach=reach,
+            )
+        trials.tell(trial, **found)
+        if ends:
+            break
+    return known(best)
 
 
-def _refuse(job, settings):
-    inspection = job["inspection"]
-    zones = [zone["tolerance_mm"] for zone in inspection.get("zones", []) if "tolerance_mm" in zone]
-    for lower, upper in (inspection["tolerance_mm"], *zones):
+def _refuse(job: Job, settings: Json) -> None:
+    inspection = job.inspection
+    zones = [zone.tolerance_mm for zone in inspection.zones if zone.tolerance_mm is not None]
+    for lower, upper in (inspection.tolerance_mm, *zones):
         if not lower < upper:
             raise InputError(
                 "planning.no_tolerance",
@@ -196,13 +220,13 @@ def _refuse(job, settings):
                 upper=upper,
             )
     if settings["force_min_N"] or settings["force_max_N"]:
-        if job["belt_machine"]["control"] != "force":
+        if job.belt_machine.control != "force":
             raise InputError(
                 "planning.no_force",
                 "plan: {key}: forces are planned for machines under force control only",
                 key="force_max_N" if settings["force_max_N"] else "force_min_N",
             )
-    if job["law"]["model"] == "geometric":
+    if job.law.model == "geometric":
         raise InputError(
             "planning.rigid",
             "plan: a geometric (rigid) tool takes all that it reaches, at any feed; nothing can be planned",
@@ -214,23 +238,24 @@ def _refuse(job, settings):
             key="law.feed_exponent",
             value=feed_exponent(job),
         )
-    if job["law"]["model"] == "local" and job["law"]["feed_curve"]:
+    if job.law.model == "local" and job.law.feed_curve:
         raise InputError(
             "planning.feed_curve",
             "plan: laws with a curve over the feed are not planned yet; give law.feed_exponent in its place",
         )
 
 
-def settled(job, context):
+def settled(data: Json, context: core.RunContext) -> Json:
     """The job with its spacing chosen, so that all rounds have the same samples."""
-    if job["sampling"]["spacing_mm"] != 0:
-        return job
-    shape = read_design(job["design"], context.part(0.0, 0.0))
+    job = typed(data)
+    if job.sampling.spacing_mm != 0:
+        return data
+    shape = read_design(job.design, context.part(0.0, 0.0))
     check_faces(job, shape)
-    return spacing.settled(job, shape, [], context.part(0.0, 0.0))[0]
+    return spacing.settled(data, shape, [], context.part(0.0, 0.0))[0]
 
 
-def _better(one, other, settings):
+def _better(one: Json, other: Json, settings: Json) -> bool:
     """Whether figures are better: nearer to the limit of pressure, or more in tolerance (surely, where that is asked
     for), or as much and nearer to it."""
     over = one.get("over_limit", 0.0) - other.get("over_limit", 0.0)
@@ -240,13 +265,13 @@ def _better(one, other, settings):
     return gain > WORSE or (gain > -WORSE and one["rms_mm"] < NEARER * other["rms_mm"])
 
 
-def _gains(one, best, settings):
+def _gains(one: Json, best: Json, settings: Json) -> bool:
     """Whether a round leads on: enough comes into tolerance, or all comes nearer to it."""
     gain = sure.gain(one, best, settings)
     return gain >= settings["least_gain"] or one["rms_mm"] < NEARER * best["rms_mm"]
 
 
-def _refuse_without_stock(result):
+def _refuse_without_stock(result: Result) -> None:
     if not result.summary["stock_volume_mm3"] > 0.0:
         raise InputError(
             "planning.no_stock",
@@ -254,70 +279,38 @@ def _refuse_without_stock(result):
         )
 
 
-def _in_levels(commands, best, settings, rounds, told, context):
+def _in_levels(trials: Trials, best: Trial) -> Trial:
     """The best feeds in few steps, simulated."""
+    commands, count = trials.commands, trials.settings["levels"]
     lasts = np.bincount(commands.group, minlength=len(commands)).astype(float)
-    free = ~commands.kept & (best["feeds"] > 0)
-    feeds = best["feeds"].copy()
-    feeds[free] = levels.quantised(feeds[free], lasts[free], settings["levels"])
-    tried = commands.with_feeds(feeds, best["factors"])
-    begun = time.perf_counter()
-    result = runs.run(tried, context.part(1.0, 1.0), influence=True, shifts=True)
-    one = {
-        **figures(result, settings),
-        "levels": settings["levels"],
-        "seconds": time.perf_counter() - begun,
-    }
-    rounds.append(one)
-    if told is not None:
-        told(one)
-    return _tried(one, feeds, best["factors"], result, tried)
+    free = ~commands.kept & (best.feeds > 0)
+    feeds = best.feeds.copy()
+    feeds[free] = levels.quantised(feeds[free], lasts[free], count)
+    return trials.tell(trials.simulate(feeds, best.factors), levels=count)
 
 
-def _in_full(commands, best, old, settings, rounds, told, context):
-    """(result of the old feeds, its figures, the best feeds) by simulations at full resolution, after a coarse search."""
-    found = []
-    for feeds, factors in ((old, np.ones(len(commands))), (best["feeds"], best["factors"])):
-        begun = time.perf_counter()
-        tried = commands.with_feeds(feeds, factors)
-        result = runs.run(tried, context.part(1.0, 1.0), influence=True, shifts=True)
-        one = {**figures(result, settings), "seconds": time.perf_counter() - begun}
-        rounds.append(one)
-        if told is not None:
-            told(one)
-        found.append(_tried(one, feeds, factors, result, tried))
-    return found[0]["result"], found[0]["figures"], found[1]
-
-
-def _below_pressure(commands, best, settings, rounds, told, context):
+def _below_pressure(trials: Trials, best: Trial) -> Trial:
     """``best`` with forces lowered where they still press above the limit of pressure: the rounds come to it from both
     sides. Where commands that stay are above it, those alone are left so."""
     for _ in range(LOWERED):
-        if best["figures"].get("over_limit", 0.0) <= 0.0:
+        if best.figures.get("over_limit", 0.0) <= 0.0:
             break
-        begun = time.perf_counter()
         force = limits.below_pressure(
-            best["result"], commands, best["feeds"], best["factors"], settings
+            best.result, trials.commands, best.feeds, best.factors, trials.settings
         )
-        if (force >= best["factors"] * (1.0 - SAME)).all():
+        if (force >= best.factors * (1.0 - SAME)).all():
             break  # all that may be lowered is
-        tried = commands.with_feeds(best["feeds"], force)
-        result = runs.run(tried, context.part(1.0, 1.0), influence=True, shifts=True)
-        one = {**figures(result, settings), "seconds": time.perf_counter() - begun}
-        rounds.append(one)
-        if told is not None:
-            told(one)
-        best["result"].influence = None
-        best = _tried(one, best["feeds"], force, result, tried)
+        trials.forget(best)
+        best = trials.tell(trials.simulate(best.feeds, force))
     return best
 
 
-def changed(found):
+def changed(found: Plan) -> Array:
     """(commands,) bool: a ``Plan`` changes its feed or its force."""
     return (abs(found.new - found.old) > SAME * found.old) | (abs(found.factors - 1.0) > SAME)
 
 
-def summary(found):
+def summary(found: Plan) -> dict[str, Any]:
     """The figures of a ``Plan``, as JSON has them."""
     forces = found.commands.force(found.factors)
     return {

@@ -1,31 +1,46 @@
 """One round of a plan: from what a simulation found to the feeds and forces that the next one tries."""
 
+from __future__ import annotations
+
 import time
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
+from ..base.kinds import Array, Floats, Json, known
 from ..engine import core
 from ..inspection import verdict as verdicts
+from ..job.settings import Job
+from ..job.typed import typed
 from . import limits, sure, with_force
 from .thinning import Thinned
+
+if TYPE_CHECKING:
+    from ..simulation.result import Result
+    from .commands import Commands
 
 SAME = 1e-9  # relative, of a feed or a force
 HURRIED = {"inner_share": 0.7, "inner_cost": 0.1}  # of the band; of what deviations cost beyond
 
+# Feeds (commands,) and factors on forces (commands,) for the next round, and what is told of it, or by the solver.
+Step: TypeAlias = "tuple[Floats, Floats, dict[str, Any]]"
 
-def feed_exponent(job):
+
+def feed_exponent(job: Job | Json) -> float:
     """gamma of the job's law: the rate of removal goes with the feed to this power."""
-    law = job["law"]
-    return float(law["feed_exponent"]) if law["model"] == "local" else 0.0
+    job = typed(job)
+    law = job.law
+    return float(law.feed_exponent) if law.model == "local" else 0.0
 
 
-def force_exponent(job):
+def force_exponent(job: Job | Json) -> float:
     """alpha of the job's law: the rate of removal goes with the pressure to this power."""
-    law = job["law"]
-    return float(law["pressure_exponent"]) if law["model"] == "local" else 1.0
+    job = typed(job)
+    law = job.law
+    return float(law.pressure_exponent) if law.model == "local" else 1.0
 
 
-def figures(result, settings):
+def figures(result: Result, settings: Json) -> dict[str, Any]:
     """What is told of a simulation: shares of the area, by the tolerance of each zone, and ``sure.figures``."""
     summary = result.summary
     found = {
@@ -36,7 +51,7 @@ def figures(result, settings):
         "rms_mm": summary["deviation_mm"]["rms"],
         "process_time_s": summary["process_time_s"],
     }
-    if any("tolerance_mm" in zone for zone in result.job["inspection"].get("zones", [])):
+    if any(zone.tolerance_mm for zone in typed(result.job).inspection.zones):
         field = result.field
         lower, upper = verdicts.limits(result.job, field)
         height, weight = np.asarray(field.height, dtype=float), sure.seen_areas(field)
@@ -50,7 +65,9 @@ def figures(result, settings):
 class _Seen:
     """What a simulation of a job says for the next round."""
 
-    def __init__(self, commands, result, feeds, factors, settings):
+    def __init__(
+        self, commands: Commands, result: Result, feeds: Floats, factors: Floats, settings: Json
+    ) -> None:
         self.commands, self.result, self.settings = commands, result, settings
         self.feeds, self.factors = feeds, factors
         lower, upper = verdicts.limits(result.job, result.field)
@@ -58,7 +75,7 @@ class _Seen:
         # mm from the middle of the band
         self.deviation = np.asarray(result.field.height, dtype=float) - 0.5 * (lower + upper)
         self.weight = sure.seen_areas(result.field)
-        self.influence = result.influence.grouped(commands.group, len(commands))
+        self.influence = known(result.influence).grouped(commands.group, len(commands))
         self.power = 1.0 - feed_exponent(result.job)  # removed depth goes with the time to this
         self.alpha = force_exponent(result.job)
         self.least, greatest = commands.force_range
@@ -68,20 +85,20 @@ class _Seen:
         self._influence = self.thinned(self.influence)  # the solver's
         self.moved = (np.diff(self._influence.first.astype(int)) > 0) & ~commands.kept
 
-    def solver(self):
+    def solver(self) -> tuple[core.Influence, Floats, Floats, Floats]:
         """(influence, mm from the middle of the band, half the band that is aimed at mm, weights mm2) for the solver."""
         thinned, band = self._thinned, sure.band(self.result, self.settings, self.half)
         kept = thinned.kept
         return self._influence, self.deviation[kept], band[kept], thinned.weight
 
-    def thinned(self, influence):
+    def thinned(self, influence: core.Influence) -> core.Influence:
         return self._thinned.influence(influence, len(self.half))
 
-    def by_force(self):
+    def by_force(self) -> core.Influence:
         """(commands,) core.Influence, mm per relative change of force."""
-        return self.result.force_influence.grouped(self.commands.group, len(self.commands))
+        return known(self.result.force_influence).grouped(self.commands.group, len(self.commands))
 
-    def within(self, low, high, most):
+    def within(self, low: Floats, high: Floats, most: float) -> tuple[Floats, Floats]:
         """Ranges (commands,) twice of a factor, by no more than the factor ``most`` from 1; 1 of what may not change."""
         low, high = (np.clip(one, 1.0 / most, most) for one in (low, high))
         low = np.minimum(low, high)
@@ -90,8 +107,16 @@ class _Seen:
 
 
 def following(
-    commands, result, feeds, factors, settings, context, time_cost=None, forces=False, reach=1.0
-):
+    commands: Commands,
+    result: Result,
+    feeds: Floats,
+    factors: Floats,
+    settings: Json,
+    context: core.RunContext,
+    time_cost: float | None = None,
+    forces: bool = False,
+    reach: float = 1.0,
+) -> Step:
     """(feeds (commands,) and factors on forces (commands,) for the next round, what is told of it).
 
     ``time_cost``: mm2 that a second of the process costs; None: only deviations count. Where time counts, deviations
@@ -135,7 +160,9 @@ def following(
     )
 
 
-def _feeds_first(seen, time_cost, reach, context):
+def _feeds_first(
+    seen: _Seen, time_cost: float | None, reach: float, context: core.RunContext
+) -> Step:
     """(feeds mm/s, factors on forces (commands,), what the solver tells): the feed does what it can, from the job's own
     force or, in a hurry, from the greatest; the force the rest, as much more as the law has it.
     """
@@ -168,18 +195,20 @@ def _feeds_first(seen, time_cost, reach, context):
     return new, np.clip(rest ** (1.0 / alpha), seen.least, seen.greatest), found
 
 
-def _feeds_and_forces(seen, reach, context):
+def _feeds_and_forces(seen: _Seen, reach: float, context: core.RunContext) -> Step:
     """As ``_feeds_first``, both at once."""
     settings, feeds, factors = seen.settings, seen.feeds, seen.factors
     slowest = (feeds / settings["feed_min_mm_s"]) ** seen.power
     fastest = (feeds / settings["feed_max_mm_s"]) ** seen.power
     most = min(settings["most_change"], with_force.MOST_TIME) ** reach
     strongest = min(settings["most_change"], with_force.MOST_FORCE) ** reach
-    influence, *places = seen.solver()
+    influence, deviation, half, weight = seen.solver()
     longer, stronger, found = with_force.solve(
         influence,
         seen.thinned(seen.by_force()),
-        *places,
+        deviation,
+        half,
+        weight,
         with_force.Ranges(
             *seen.within(fastest, slowest, most),
             *seen.within(seen.least / factors, seen.greatest / factors, strongest),
@@ -191,7 +220,7 @@ def _feeds_and_forces(seen, reach, context):
     return feeds / longer ** (1.0 / seen.power), factors * stronger, found
 
 
-def _removed(influence, share, samples):
+def _removed(influence: core.Influence, share: Floats, samples: int) -> Array:
     """(samples,) mm that motions remove which take so much longer."""
     each = np.repeat(share, np.diff(influence.first).astype(int))
     return np.bincount(influence.sample, each * influence.depth, samples)

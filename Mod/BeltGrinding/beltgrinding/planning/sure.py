@@ -6,13 +6,22 @@ from them leaves, at first order, the height less the sum of those, each times a
 that lies beside where it should has its surface off by its normal times the error.
 """
 
+from __future__ import annotations
+
 from statistics import NormalDist
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..base.kinds import Floats, Json
 from ..engine import InputError, core
 from ..inspection import verdict as verdicts
 from ..job import law as laws
+from ..job.settings import Job
+from ..job.typed import typed
+
+if TYPE_CHECKING:
+    from ..simulation.result import Result
 
 DRAWN = 1000
 SEED = 1
@@ -20,10 +29,11 @@ CHUNK = 4096  # samples at once
 LEAST_BAND = 0.1  # of the tolerance's, that is always aimed at
 
 
-def refuse(job, settings):
+def refuse(job: Job | Json, settings: Json) -> None:
     """Raises InputError where a probability is asked for and nothing says how unsure anything is."""
+    job = typed(job)
     if settings["probability"] and not settings["placement_sd_mm"]:
-        if not laws.shifted_laws(job["law"]):
+        if not laws.shifted_laws(job.law):
             raise InputError(
                 "planning.not_calibrated",
                 "plan: {key}: neither is the law calibrated, which would say how unsure it is (beltgrind calibrate), "
@@ -33,19 +43,19 @@ def refuse(job, settings):
             )
 
 
-def seen_areas(field):
+def seen_areas(field: core.HeightField) -> Floats:
     """(samples,) mm2; 0 where no stock was found."""
     seen = (np.asarray(field.flags) & core.MISSED) == 0
     return np.where(seen, np.asarray(field.areas, dtype=float), 0.0)
 
 
-def deviation(result, settings):
+def deviation(result: Result, settings: Json) -> Floats:
     """(samples,) mm: the height's standard deviation."""
     found = settings["placement_sd_mm"] ** 2 + (np.asarray(result.shifts) ** 2).sum(axis=1)
     return np.sqrt(found)
 
 
-def band(result, settings, half):
+def band(result: Result, settings: Json, half: Floats) -> Floats:
     """(samples,) mm: half of the tolerance's band, ``half``, less what is unsure."""
     if not settings["probability"]:
         return half
@@ -53,7 +63,7 @@ def band(result, settings, half):
     return np.maximum(half - by * deviation(result, settings), LEAST_BAND * half)
 
 
-def drawn(result, settings, height=None):
+def drawn(result: Result, settings: Json, height: Floats | None = None) -> Floats:
     """(``DRAWN``,) share of the area that is in tolerance, for each law and placement drawn at random; the same at every
     call. ``height``: (samples,) mm, in place of the result's."""
     field = result.field
@@ -74,7 +84,7 @@ def drawn(result, settings, height=None):
     return share / weight.sum()
 
 
-def figures(result, settings, height=None):
+def figures(result: Result, settings: Json, height: Floats | None = None) -> dict[str, Any]:
     """What is told of ``drawn``: ``sure_share``, of the area, that is in tolerance with the wanted probability;
     ``expected_share``, the mean of all drawn; ``passing``, of the drawn ones, that have the wanted share; their 5th, 50th and 95th percentile. Empty where no
     probability is asked for."""
@@ -89,12 +99,12 @@ def figures(result, settings, height=None):
     }
 
 
-def share(figures):
+def share(figures: Json) -> float:
     """What a plan keeps: the share of the area in tolerance, that which is sure where a probability is asked for."""
     return figures.get("sure_share", figures["in_tolerance"])
 
 
-def gain(one, other, settings):
+def gain(one: Json, other: Json, settings: Json) -> float:
     """By how much figures are better than others, in shares. Where a probability is asked for: by more of the drawn laws
     that pass, until as many do as are asked for; else by what is expected of them."""
     if not settings["probability"]:

@@ -1,8 +1,13 @@
 """Fewer samples for the solver: no denser than the contact can tell apart."""
 
+from __future__ import annotations
+
 import numpy as np
 
+from ..base.kinds import Floats, Json
 from ..engine import core
+from ..job.settings import Job
+from ..job.typed import typed
 
 PER_CELL = 1.5  # samples along a cell of the contact: as the simulation wants them at least
 
@@ -11,9 +16,9 @@ class Thinned:
     """One sample stands for all in a cube of space, on its side of the part, with the area of all. What a motion removes
     changes no faster than from cell to cell of the contact's grid, so that a plan needs no more."""
 
-    def __init__(self, field, job, weight):
+    def __init__(self, field: core.HeightField, job: Job | Json, weight: Floats) -> None:
         """``weight`` (samples,): their areas mm2, 0 of those that do not count."""
-        size = max(job["belt_machine"]["contact_spacing_mm"], PER_CELL * field.spacing) / PER_CELL
+        size = max(typed(job).belt_machine.contact_spacing_mm, PER_CELL * field.spacing) / PER_CELL
         self.kept, self.weight = np.arange(field.size), weight
         if size <= PER_CELL * field.spacing:
             return  # each would stand for one or two
@@ -30,7 +35,7 @@ class Thinned:
         self.kept = order[first][rising]
         self.weight = np.add.reduceat(weight[order], np.flatnonzero(first))[rising]
 
-    def influence(self, influence, samples):
+    def influence(self, influence: core.Influence, samples: int) -> core.Influence:
         """That on the samples that are kept, of ``samples``."""
         if len(self.kept) == samples:
             return influence

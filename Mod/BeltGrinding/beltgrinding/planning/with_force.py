@@ -4,10 +4,13 @@ More force does not only remove more: the contact grows, and its pressure change
 copies of each other, and at borders and beside hollows they do together what neither does alone.
 """
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..base.kinds import Array, Floats
 from ..engine import core
 
 MOST_FORCE, MOST_TIME = (
@@ -23,13 +26,23 @@ INNER = 0.7  # of the band, as the solver's
 class Ranges(NamedTuple):
     """Of each command, (commands,): factors on its time and on its force."""
 
-    fastest: np.ndarray
-    slowest: np.ndarray
-    weakest: np.ndarray
-    strongest: np.ndarray
+    fastest: Floats
+    slowest: Floats
+    weakest: Floats
+    strongest: Floats
 
 
-def solve(influence, by_force, deviation, half, weight, ranges, paces, smoothing, context):
+def solve(
+    influence: core.Influence,
+    by_force: core.Influence,
+    deviation: Floats,
+    half: Floats,
+    weight: Floats,
+    ranges: Ranges,
+    paces: tuple[Floats, Floats],
+    smoothing: float,
+    context: core.RunContext,
+) -> tuple[Floats, Floats, dict[str, Any]]:
     """(factors on the time, factors on the force (commands,), what ``core.plan_dwell`` tells).
 
     ``influence``, ``by_force``: core.Influence of the commands, mm, and mm per relative change of force;
@@ -69,17 +82,17 @@ def solve(influence, by_force, deviation, half, weight, ranges, paces, smoothing
     return found["factor"][:count], found["factor"][count + 1 :], found
 
 
-def _columns(influence):
+def _columns(influence: core.Influence) -> Array:
     return np.repeat(np.arange(len(influence)), np.diff(influence.first.astype(int)))
 
 
-def energy(influence, weight):
+def energy(influence: core.Influence, weight: Floats) -> Array:
     """(commands,) mm4: of each, the square of what it removes, over the area."""
     each = influence.depth.astype(float) ** 2 * weight[influence.sample]
     return np.bincount(_columns(influence), each, len(influence))
 
 
-def _pressing(influence, deviation, half, weight):
+def _pressing(influence: core.Influence, deviation: Floats, half: Floats, weight: Floats) -> Array:
     """(commands,) bool: enough of what it removes lies where deviations cost."""
     columns, sample = _columns(influence), influence.sample
     each = influence.depth * weight[sample]

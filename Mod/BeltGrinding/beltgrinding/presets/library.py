@@ -2,15 +2,20 @@
 its source (Resources/presets, and the user's own files; presets.schema.json).
 """
 
+from __future__ import annotations
+
 import copy
 import json
 import os
 import sys
+from collections.abc import Iterable, Sequence
+from functools import lru_cache
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 from ..base import schema_errors, schemas
 from ..base.files import at_key, in_file
+from ..base.kinds import Json
 from ..base.resources import resources
 from ..engine import InputError
 from . import robot_model
@@ -49,21 +54,23 @@ LABELS = {
     "belt_speed_offhand": "belt speed, offhand",
 }
 
+Preset: TypeAlias = "str | Json | None"  # its id, or itself
+
 
 class Library(NamedTuple):
     """All presets by kind, and what is wrong with the files (InputError each)."""
 
-    machines: list
-    wheels: list
-    belts: list
-    materials: list
-    thermals: list
-    robots: list
-    actuators: list
-    problems: list
+    machines: list[dict[str, Any]]
+    wheels: list[dict[str, Any]]
+    belts: list[dict[str, Any]]
+    materials: list[dict[str, Any]]
+    thermals: list[dict[str, Any]]
+    robots: list[dict[str, Any]]
+    actuators: list[dict[str, Any]]
+    problems: list[InputError]
 
 
-def user_folder():
+def user_folder() -> Path:
     """Where the user's own files (*.json) are looked for: FreeCAD's folder for user data when it
     runs inside FreeCAD, else that of the command line's settings.
     """
@@ -74,24 +81,39 @@ def user_folder():
     return Path(settings_folder, "beltgrinding", "presets")
 
 
-def library():
+def library() -> Library:
     """Reads all files. A preset that is wrong is left out and stands in ``problems``."""
-    found = Library(*([] for _ in Library._fields))
-    rules = schemas.schema("presets")
+    found = Library([], [], [], [], [], [], [], [])
     files = [
         *sorted((resources() / "presets").glob("*.json")),
         *sorted(user_folder().glob("*.json")),
     ]
     for path in files:
         try:
-            _read(path, rules, found)
+            _take(path, found)
         except InputError as error:
             found.problems.append(error)
     return found
 
 
-def _read(path, rules, found):
+@lru_cache(maxsize=64)
+def _read(path: Path, stamp: object) -> tuple[Json, list[tuple[Sequence[Any], InputError]]]:
+    """What stands in a file, and what is wrong with it by the schema; read anew once its stamp changes."""
     data = schemas.read_json(path)
+    return data, list(schemas.problems(data, schemas.schema("presets"), "the file"))
+
+
+def _stamp(path: Path) -> object:
+    """What changes with a file's content; None where nothing is known of it."""
+    try:
+        about = path.stat()
+    except OSError:  # reading it says why
+        return None
+    return about.st_mtime_ns, about.st_size, about.st_ino
+
+
+def _take(path: Path, found: Library) -> None:
+    data, problems = _read(path, _stamp(path))
     if "formulas" in data and path.parent == user_folder():
         raise InputError(
             "presets.formula",
@@ -100,7 +122,7 @@ def _read(path, rules, found):
             file=path,
         )
     bad = set()  # (kind, index)
-    for where, problem in schemas.problems(data, rules, "the file"):
+    for where, problem in problems:
         if len(where) < 2 or where[0] not in KINDS:
             raise in_file(problem, path)
         if tuple(where[:2]) not in bad:
@@ -125,9 +147,9 @@ def _read(path, rules, found):
                 found.problems.append(in_file(error, path))
 
 
-def _with_sources(record, sources):
+def _with_sources(preset: Json, sources: Json) -> dict[str, Any]:
     """A copy of the preset with the sources themselves in place of their keys."""
-    record = copy.deepcopy(record)
+    record: dict[str, Any] = copy.deepcopy(dict(preset))
     if "model" in record:
         if record["source"] not in sources:
             raise InputError(
@@ -164,7 +186,7 @@ def _with_sources(record, sources):
     return record
 
 
-def wheels():
+def wheels() -> list[dict[str, Any]]:
     """Presets of contact wheels: dict(id, name, and numbers: diameter, width, rim_thickness,
     shore_a, youngs_modulus, poissons_ratio, land_share, each where it is known). A number: dict(value
     or range, unit, source, and where, given, note if there are any).
@@ -172,62 +194,70 @@ def wheels():
     return library().wheels
 
 
-def machines():
+def machines() -> list[dict[str, Any]]:
     """Presets of free belts and platens: as ``wheels``, with kind (a job's belt_machine.kind), run_width, free_length,
     run_thickness, run_tension, run_modulus, run_poissons_ratio, roller_radius, platen_length, machine_speed.
     """
     return library().machines
 
 
-def belts():
+def belts() -> list[dict[str, Any]]:
     """Presets of belts: as ``wheels``, with grain, grit, grain_size, tension, bending_stiffness."""
     return library().belts
 
 
-def materials():
+def materials() -> list[dict[str, Any]]:
     """Presets of workpiece materials: as ``wheels``, with belt_speed, belt_speed_roughing,
     belt_speed_polishing, belt_speed_offhand, heat_limit.
     """
     return library().materials
 
 
-def thermals():
+def thermals() -> list[dict[str, Any]]:
     """What temperatures are computed with, by material: as ``wheels``, with conductivity, heat_capacity, density,
     burn_temperature, friction, partition.
     """
     return library().thermals
 
 
-def robots():
+def robots() -> list[dict[str, Any]]:
     """Presets of robots: dict(id, name, source, model as a job's robot.model; where, text)."""
     return library().robots
 
 
-def actuators():
+def actuators() -> list[dict[str, Any]]:
     """Presets of force controls that take time: as ``wheels``, with lag, moving_mass, damping, speed_limit."""
     return library().actuators
 
 
-def problems():
+def problems() -> list[InputError]:
     """What is wrong with the files of presets: a list of InputError naming file and key."""
     return library().problems
 
 
-def numbers(preset):
+def numbers(preset: Json) -> dict[str, dict[str, Any]]:
     """The numbers of a preset, by name."""
     return {key: value for key, value in preset.items() if isinstance(value, dict)}
 
 
-def middle(number):
+def middle(number: Json) -> float:
     """A number's value, or the middle of its range."""
     return number["value"] if "value" in number else sum(number["range"]) / 2.0
 
 
-def settings(wheel=None, belt=None, material=None, actuator=None, machine=None, thermal=None):
+def settings(
+    wheel: Preset | None = None,
+    belt: Preset | None = None,
+    material: Preset | None = None,
+    actuator: Preset | None = None,
+    machine: Preset | None = None,
+    thermal: Preset | None = None,
+) -> dict[str, Any]:
     """{dotted key of a job: value} of what the presets say; each an id or a preset. Only keys that
     jobs have; the modulus follows from the hardness unless the preset gives it. Raises InputError.
     """
-    found, known = {}, schemas.schema("job")
+    found: dict[str, Any] = {}
+    known = schemas.schema("job")
     chosen = {
         "wheels": wheel,
         "belts": belt,
@@ -261,7 +291,7 @@ def settings(wheel=None, belt=None, material=None, actuator=None, machine=None, 
     return {key: value for key, value in found.items() if _is_known(key, known)}
 
 
-def _is_known(key, rules):
+def _is_known(key: str, rules: Json) -> bool:
     for part in key.split("."):
         rules = rules.get("properties", {}).get(part)
         if rules is None:
@@ -269,19 +299,27 @@ def _is_known(key, rules):
     return True
 
 
-def apply(job, wheel=None, belt=None, material=None, actuator=None, machine=None, thermal=None):
+def apply(
+    job: Json,
+    wheel: Preset | None = None,
+    belt: Preset | None = None,
+    material: Preset | None = None,
+    actuator: Preset | None = None,
+    machine: Preset | None = None,
+    thermal: Preset | None = None,
+) -> dict[str, Any]:
     """A copy of the job (a dict) with what the presets say put in. Raises InputError."""
-    job = copy.deepcopy(job)
+    changed: dict[str, Any] = copy.deepcopy(dict(job))
     for key, value in settings(wheel, belt, material, actuator, machine, thermal).items():
         *path, last = key.split(".")
-        node = job
+        node = changed
         for part in path:
             node = node.setdefault(part, {})
         node[last] = value
-    return job
+    return changed
 
 
-def find(kind, name):
+def find(kind: str, name: str) -> dict[str, Any]:
     """The preset of an id. Raises InputError, also naming files that could not be read."""
     found = library()
     known = {preset["id"]: preset for preset in getattr(found, kind)}
@@ -293,29 +331,29 @@ def find(kind, name):
         "presets: no '{name}' among the {kind}; {hint}{broken}",
         name=name,
         kind=kind,
-        hint=schema_errors.hint(name, known),
+        hint=schema_errors.hint(name, list(known)),
         broken=broken,
     )
 
 
-def number_text(number):
+def number_text(number: Json) -> str:
     """Such as "30 to 40 m/s"."""
     span = number["range"] if "range" in number else [number["value"]]
     unit = "" if number["unit"] in ("1", "grit") else " " + number["unit"]
     return " to ".join(f"{value:g}" for value in span) + unit
 
 
-def label(name):
+def label(name: str) -> str:
     """What a number is called in lists."""
     return LABELS.get(name, name.replace("_", " "))
 
 
-def source_text(number):
+def source_text(number: Json) -> str:
     """The source of a number in one line."""
     return cite(number["source"], number.get("where"))
 
 
-def describe(preset):
+def describe(preset: Json) -> list[str]:
     """One line for each thing that the preset says, with its source."""
     lines = [preset["text"]] if "text" in preset else []
     if "model" in preset:
@@ -325,7 +363,7 @@ def describe(preset):
     return lines
 
 
-def table(kind, presets):
+def table(kind: str, presets: Iterable[Json]) -> str:
     """The presets of a kind as a text table with sources."""
     rows = [("id", "preset", "number", "value", "source")]
     for preset in presets:
@@ -349,14 +387,14 @@ def table(kind, presets):
     return "\n".join([kind.upper(), *(line.rstrip() for line in lines)])
 
 
-def print_list(kind=None, as_json=False):
+def print_list(kind: str | None = None, as_json: bool = False) -> None:
     """Prints the presets of one kind, or of all. Raises InputError for files that are wrong, after
     the good ones are printed.
     """
     found = library()
     chosen = {one: getattr(found, one) for one in ([kind] if kind else KINDS)}
     if as_json:
-        print(json.dumps(chosen, indent=2, ensure_ascii=False))
+        print(json.dumps(chosen, indent=2, ensure_ascii=False, allow_nan=False))
     else:
         print("\n\n".join(table(one, presets) for one, presets in chosen.items()))
     if found.problems:

@@ -3,23 +3,33 @@
 Joint angles are in degrees; frames are 4 x 4 in mm.
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
 from ..base import frames, schemas
 from ..base.files import at_key
+from ..base.kinds import Floats, Json
 from ..engine import InputError
+from ..geometry.body_names import LINKS
 from . import library, robot_shape
 from .robot_model import JOINTS, arm, robot_rules, validate_model
 
+if TYPE_CHECKING:
+    from ..engine import core
 
-def checked(robot):
+
+def checked(robot: Json) -> dict[str, Any]:
     """A copy of a job's ``robot`` with all defaults. Raises InputError naming the key."""
-    robot = schemas.checked(robot, robot_rules(), "robot")
-    validate(robot)
-    return robot
+    made: dict[str, Any] = schemas.checked(robot, robot_rules(), "robot")
+    validate(made)
+    return made
 
 
-def validate(robot):
+def validate(robot: Json) -> None:
     """Raises InputError for what the schema cannot say of a robot with all its defaults."""
     model = robot["model"]
     if robot["preset"] and model["joints"]:
@@ -35,7 +45,7 @@ def validate(robot):
             key="robot.start_joints_deg",
             count=len(robot["start_joints_deg"]),
         )
-    if len(robot["link_radii_mm"]) not in (0, len(robot_shape.LINKS)):
+    if len(robot["link_radii_mm"]) not in (0, len(LINKS)):
         raise InputError(
             "presets.link_radii",
             "{key}: {count} radii; give seven, foot to flange, or none",
@@ -47,38 +57,38 @@ def validate(robot):
     validate_model(model)
 
 
-def load_preset(name):
+def load_preset(name: str) -> dict[str, Any]:
     """The model (a job's robot.model) of a preset's id. Raises InputError."""
     return library.find("robots", name)["model"]
 
 
-def given(robot):
+def given(robot: Json) -> bool:
     """Whether a job's robot (with defaults) is one, whose reach is to be checked."""
     return bool(robot["preset"] or robot["model"]["joints"])
 
 
-def name(robot):
+def name(robot: Json) -> str:
     """How the robot is called; "" for none."""
     return robot["preset"] or ("own model" if robot["model"]["joints"] else "")
 
 
-def arm_of(robot):
+def arm_of(robot: Json) -> core.RobotArm | None:
     """core.RobotArm of a job's robot with its defaults, None if it is none. Raises InputError."""
     return arm(model_of(robot)) if given(robot) else None
 
 
-def model_of(robot):
+def model_of(robot: Json) -> Json:
     """The robot.model of a job's robot with its defaults, its preset's if it has one."""
     return load_preset(robot["preset"]) if robot["preset"] else robot["model"]
 
 
-def links_of(robot):
+def links_of(robot: Json) -> list[robot_shape.Link]:
     """[(tubes, hubs)] of a job's robot with its defaults, as ``robot_shape.links`` has them."""
-    of = arm_of(robot)
+    of = arm(model_of(robot))
     return robot_shape.links(of, robot_shape.radii(robot, of), model_of(robot)["floor_mm"])
 
 
-def robot_frame(robot, key):
+def robot_frame(robot: Json, key: str) -> Floats:
     """(4, 4), mm: the transform under a key of a job's robot. Raises InputError."""
     try:
         return frames.from_data(robot.get(key))
@@ -86,12 +96,12 @@ def robot_frame(robot, key):
         raise at_key(error, f"robot.{key}") from None
 
 
-def pose_function(robot):
+def pose_function(robot: Json) -> Callable[[Sequence[float]], Floats] | None:
     """A function that gives the pose (4, 4) in the frame of the programs of six joint angles in
     degrees; None if the job's robot is none. Raises InputError.
     """
-    of = arm_of(robot)
-    if of is None:
+    if not given(robot):
         return None
+    of = arm(model_of(robot))
     base, tool = robot_frame(robot, "base_from_robot"), robot_frame(robot, "flange_from_tcp")
     return lambda joints_deg: base @ of.forward(np.radians(joints_deg)) @ tool

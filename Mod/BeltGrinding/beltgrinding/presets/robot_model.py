@@ -3,12 +3,16 @@
 Angles are in degrees here, as the controller shows them, and in radian in the core.
 """
 
+from __future__ import annotations
+
 import math
+from typing import Any
 
 import numpy as np
 
 from ..base import frames, schemas
 from ..base.files import at_key
+from ..base.kinds import Json
 from ..engine import InputError, core
 
 JOINTS = 6
@@ -16,22 +20,22 @@ URDF_KEYS = ("origin_mm", "rpy_deg", "axis")
 DH_KEYS = ("a_mm", "alpha_deg", "d_mm", "theta_deg", "direction")
 
 
-def robot_rules():
+def robot_rules() -> dict[str, Any]:
     """The schema of a job's ``robot``, by itself."""
     job = schemas.schema("job")
     return {**job["properties"]["robot"], "definitions": job["definitions"]}
 
 
-def checked_model(model):
+def checked_model(model: Json) -> dict[str, Any]:
     """A copy of a ``robot.model`` with all defaults. Raises InputError."""
-    model = schemas.checked({"model": model}, robot_rules(), "robot")["model"]
-    validate_model(model)
-    if not model["joints"]:
+    made: dict[str, Any] = schemas.checked({"model": model}, robot_rules(), "robot")["model"]
+    validate_model(made)
+    if not made["joints"]:
         raise InputError("presets.six_joints", "{key}: a robot has six joints", key="model.joints")
-    return model
+    return made
 
 
-def validate_model(model):
+def validate_model(model: Json) -> None:
     """Raises InputError for what the schema cannot say of a ``robot.model``; none is sound, too."""
     if model["joints"]:
         try:
@@ -40,7 +44,7 @@ def validate_model(model):
             raise at_key(error, "robot.model") from None
 
 
-def arm(model):
+def arm(model: Json) -> core.RobotArm:
     """core.RobotArm of a robot.model with its defaults. Raises InputError naming the joint."""
     own, other = (URDF_KEYS, DH_KEYS) if model["convention"] == "urdf" else (DH_KEYS, URDF_KEYS)
     rules = robot_rules()["properties"]["model"]["properties"]["joints"]["items"]["properties"]
@@ -57,7 +61,7 @@ def arm(model):
                 convention=model["convention"],
                 keys=", ".join(own),
             )
-        row = {
+        row: dict[str, Any] = {
             "lower": math.radians(joint["lower_deg"]),
             "upper": math.radians(joint["upper_deg"]),
             "max_speed": math.radians(joint["max_speed_deg_s"]),

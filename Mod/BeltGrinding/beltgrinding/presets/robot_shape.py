@@ -4,13 +4,18 @@ Each link is a tapered tube from its axis to the next with a hub about its own. 
 *estimated* from the arm's length, unless the job says it (``robot.link_radii_mm``).
 """
 
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, TypeAlias
+
 import numpy as np
 
-FOOT = "robot foot"
-LINKS = (
-    FOOT,
-    *(f"robot link {k}" for k in range(1, 7)),
-)  # names of bodies; link k: what joint k carries
+from ..base.kinds import Array, Floats, Json
+
+if TYPE_CHECKING:
+    from ..engine import core
+
 # Radii as shares of the arm's length (axis 2 to the wrist, stretched), from data sheets' drawings of
 # arms between 0.8 and 2.6 m: foot, column, upper arm, elbow, forearm, wrist, flange.
 SHARES = (0.12, 0.10, 0.075, 0.07, 0.055, 0.045, 0.03)
@@ -21,13 +26,17 @@ ALONG = 0.9  # cosine: an axis nearer to its link's direction needs no hub
 UPRIGHT = 0.5  # of axis 1 along the base's z; else the foot begins at the joint
 LEAST = 1e-6  # mm; shorter is nothing
 
+Mesh: TypeAlias = "tuple[Floats, Array]"  # points (n, 3) mm, triangles (m, 3)
+Link: TypeAlias = "tuple[Mesh, Mesh]"  # tubes, hubs
+Frustum: TypeAlias = "tuple[Floats, Floats, float, float]"  # ends, and a radius at each
 
-def radii(robot, arm):
+
+def radii(robot: Json, arm: core.RobotArm) -> Floats:
     """(7,) mm: foot, then links 1 to 6; 0: the link has no body. ``robot``: a job's, with its defaults."""
     return np.array(robot["link_radii_mm"] or np.multiply(SHARES, arm.length), dtype=float)
 
 
-def links(arm, radius, floor):
+def links(arm: core.RobotArm, radius: Floats, floor: float) -> list[Link]:
     """[(tubes, hubs)] of the foot and links 1 to 6, each (points (n, 3) in mm, triangles (m, 3)), closed,
     where they lie in the robot's base at joint angles 0; arm.links(q) moves them.
 
@@ -40,7 +49,9 @@ def links(arm, radius, floor):
     upright = abs(axes[0][2]) > UPRIGHT
     foot = shoulder + axes[0] * ((floor - shoulder[2]) / axes[0][2]) if upright else points[0]
     middle = 0.5 * (foot + shoulder)
-    found = [([(foot, middle, radius[0], radius[1])], [])]
+    found: list[tuple[list[Frustum], list[Frustum]]] = [
+        ([(foot, middle, radius[0], radius[1])], [])
+    ]
     found.append(
         (
             [
@@ -55,7 +66,7 @@ def links(arm, radius, floor):
         begin, axis, r = points[k - 1], axes[k - 1], radius[k]
         way = end - begin
         length = float(np.linalg.norm(way))
-        hub = []
+        hub: list[Frustum] = []
         if length < LEAST and k == 6:
             # Behind the flange, towards the wrist.
             back = axis * np.sign(axis @ (points[4] - begin) or 1.0)
@@ -67,12 +78,12 @@ def links(arm, radius, floor):
     return [(_joined(tubes), _joined(hubs)) for tubes, hubs in found]
 
 
-def body(tubes, hubs):
+def body(tubes: Mesh, hubs: Mesh) -> Mesh:
     """(points, triangles) of a link as one."""
     return _merged([tubes, hubs])
 
 
-def _joined(frusta):
+def _joined(frusta: Iterable[Frustum]) -> Mesh:
     return _merged(
         [
             _frustum(*one)
@@ -82,14 +93,14 @@ def _joined(frusta):
     )
 
 
-def _merged(meshes):
+def _merged(meshes: Sequence[Mesh]) -> Mesh:
     points = [np.zeros((0, 3)), *(mesh[0] for mesh in meshes)]
     begins = np.cumsum([0, *(len(one) for one in points[1:])])
     faces = [np.zeros((0, 3), int), *(mesh[1] + b for mesh, b in zip(meshes, begins))]
     return np.concatenate(points), np.concatenate(faces)
 
 
-def _frustum(begin, end, radius, far):
+def _frustum(begin: Floats, end: Floats, radius: float, far: float) -> Mesh:
     """A closed truncated cone between two points with a radius at each end."""
     z = (end - begin) / np.linalg.norm(end - begin)
     x = np.cross(z, np.eye(3)[np.argmin(np.abs(z))])

@@ -1,16 +1,28 @@
 """What a robot program says: motions with poses, and what could not be resolved."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import List, Optional
+from typing import Any, Optional, TypeAlias, TypeVar, cast
 
 import numpy as np
 
 from ..base.frames import to_quaternions
+from ..base.kinds import Array, Floats
 from ..base.regular_files import read_regular, shown
 from ..base.stopping import check
-from ..engine import Fact, InputError
+from ..engine import Fact as Fact, InputError
+from . import one_frame
+
+Told: TypeAlias = "Fact | str"  # a Fact, or a code with the English form and its arguments
+# As a Reason has it: a Fact, or what one is made of.
+Why: TypeAlias = "Fact | tuple[str, str, dict[str, Any]]"
+Joints: TypeAlias = "tuple[float, ...]"  # six angles, degrees
+# Centre, x axis to the start, y axis, radius mm, angle to the end.
+Circle: TypeAlias = "tuple[Floats, Floats, Floats, float, float]"
 
 CHORD_ERROR = 0.01  # mm, of an arc resolved into chords
 PASSING_ERROR = 0.05  # mm, that the way of a spline may pass beside its points
@@ -29,21 +41,23 @@ class ProgramError(InputError):
     """A program that cannot be read; the message names file and line and what to do."""
 
     @classmethod
-    def at(cls, file, line, code, text, /, **arguments):
+    def at(cls, file: str, line: int, code: str, text: str, /, **arguments: object) -> ProgramError:
         """The error in a line of a file."""
         return cls(code, text, **arguments).in_line(file, line)
 
     @classmethod
-    def of(cls, error):
+    def of(cls, error: InputError) -> ProgramError:
         """Another InputError as one of a program."""
         own = cls.__new__(cls)
         own.__dict__.update(error.__dict__)
         own.args = error.args
         return own
 
-    def in_line(self, file, line):
+    def in_line(self, file: str, line: int) -> ProgramError:
         """The error with its place before it."""
-        return self.within("programs.at", "{file}:{line}: ", file=file, line=line)
+        error = self.within("programs.at", "{file}:{line}: ", file=file, line=line)
+        assert isinstance(error, ProgramError)  # of its own class
+        return error
 
 
 class Problem(Fact):
@@ -52,31 +66,59 @@ class Problem(Fact):
     str() begins with its place, "FILE:LINE: ". ``message``: the Fact without the place.
     """
 
-    def __new__(cls, file, line, told, text=None, /, **arguments):
+    file: str
+    line: int
+    message: Fact
+
+    def __new__(
+        cls, file: str, line: int, told: Told, text: str | None = None, /, **arguments: object
+    ) -> Problem:
         """``told``: a Fact, or a code with the English form and its arguments."""
-        message = told if text is None else Fact(told, text, **arguments)
+        message = cast(Fact, told) if text is None else Fact(told, text, **arguments)
         self = str.__new__(cls, f"{file}:{line}: {message}")
         self.file, self.line, self.message = file, line, message
         self.code, self.text, self.arguments = message.code, message.text, message.arguments
         return self
 
     @property
-    def context(self):
+    def context(self) -> list[tuple[str, str, dict[str, Any]]]:  # type: ignore[override] # follows from its place
         """As an InputError's."""
         return [("programs.at", "{file}:{line}: ", {"file": self.file, "line": self.line})]
+
+
+R = TypeVar("R", bound="Reason")
 
 
 class Reason:
     """Why something is not known: a Fact that is made when it is asked for, since most never are.
 
-    Made of a Fact, or of a code, the English form and its arguments.
+    Made of a Fact, of another Reason, or of a code, the English form and its arguments. ``wants``: (NAME,
+    what it is, as in ``Program.asked``) of what a person may give in place of what is not known; None:
+    nothing. What depends on it is not known for the same Reason, so that the first cause is told and asked for.
     """
 
-    def __init__(self, told, text=None, /, **arguments):
-        self.told = told if text is None else (told, text, arguments)
+    def __init__(
+        self, told: Why | Reason | str, text: str | None = None, /, **arguments: object
+    ) -> None:
+        self.wants: tuple[str, str] | None = None
+        self.told: Why
+        if isinstance(told, Reason):
+            self.wants, self.told = told.wants, told.told
+        else:
+            self.told = cast(Why, told) if text is None else (cast(str, told), text, arguments)
+
+    def wanting(self: R, name: str, shape: str) -> R:
+        """Itself, with what a person may give."""
+        self.wants = name.upper(), shape
+        return self
+
+    def after(self: R, other: Reason) -> R:
+        """Itself, with what a person may give for another Reason that it follows from."""
+        self.wants = other.wants
+        return self
 
     @property
-    def fact(self):
+    def fact(self) -> Fact:
         if isinstance(self.told, tuple):
             code, text, arguments = self.told
             self.told = Fact(code, text, **arguments)
@@ -86,12 +128,21 @@ class Reason:
 class Unknown(Reason, Exception):
     """What only the controller can know; ``fact`` says what."""
 
-    def __str__(self):
+    def __str__(self) -> str:
         return str(self.fact)
 
 
-def shortened(fact, most):
-    """A fact in at most ``most`` characters: reasons that hang on each other make it ever longer."""
+CHAINED = ("programs.not_known_since", "programs.unknown_because")  # {name} for a {reason}
+
+
+def shortened(fact: Fact, most: int) -> Fact:
+    """A fact in at most ``most`` characters; of reasons that hang on each other the first cause remains."""
+    first: Any = fact.arguments.get("reason")
+    reason = first
+    while getattr(reason, "code", "") in CHAINED:
+        first, reason = reason, reason.arguments["reason"]
+    if fact.code in CHAINED and first is not fact.arguments["reason"]:
+        fact = Fact(fact.code, fact.text, **{**fact.arguments, "reason": first})
     if len(fact) <= most:
         return fact
     arguments = {k: v[:most] if isinstance(v, str) else v for k, v in fact.arguments.items()}
@@ -105,7 +156,7 @@ class Motion:
     """One programmed target. ``pose``: 4 x 4 base_from_tcp in mm, None for a joint target."""
 
     kind: str  # PTP, LIN, CIRC, SPL; GAP: a mark where motions are left out
-    pose: Optional[np.ndarray]
+    pose: Optional[Floats]
     line: int
     file: str
     speed_mm_s: Optional[float] = None
@@ -119,7 +170,9 @@ class Motion:
     # How the tool turns on the way: from the start's orientation to the target's; "path": so against an
     # arc's tangent; "hold": it keeps the start's; "hold path": it keeps that against the tangent
     turn: str = ""
-    joints_deg: Optional[tuple] = None  # of a joint target: six angles as the controller shows them
+    joints_deg: Optional[
+        Joints
+    ] = None  # of a joint target: six angles as the controller shows them
     free_roll: bool = (
         False  # the program gives the tool's axis only: a rule turns the pose about it
     )
@@ -131,29 +184,44 @@ class Program:
 
     language: str
     file: str
-    motions: List[Motion] = field(default_factory=list)
-    problems: List[Problem] = field(default_factory=list)
+    motions: list[Motion] = field(default_factory=list)
+    problems: list[Problem] = field(default_factory=list)
     # The frames that motions name, as far as the program tells them: 4 x 4 in mm, bases in the robot's
     # own base and tools in its flange; where the robot holds the part (``held``: the words of such
     # bases) bases in the flange and tools in the robot's base.
-    base_frames: dict = field(default_factory=dict)
-    tool_frames: dict = field(default_factory=dict)
-    held: set = field(default_factory=set)
+    base_frames: dict[str, Floats] = field(default_factory=dict)
+    tool_frames: dict[str, Floats] = field(default_factory=dict)
+    held: set[str] = field(default_factory=set)
     # Names that only the controller knows and the program asks for, {NAME: "frame", "number", "truth", or ""
     # where the program does not tell which}, whether a person gave them (``programs.given``) or not.
-    asked: dict = field(default_factory=dict)
-    told: set = field(default_factory=set)  # problems that path_arrays has found
+    asked: dict[str, str] = field(default_factory=dict)
+    given: set[str] = field(default_factory=set)  # of those names, and "units": what a person gave
+    asks_units: bool = (
+        False  # the file does not say its unit of length, whether a person gave it or not
+    )
+    units_mm: set[float] = field(
+        default_factory=set
+    )  # lengths of its units, where a file may be in others than mm
+    lost: int = 0  # motions, or statements that may move, that are left out
+    left_out: list[tuple[str, int]] = field(default_factory=list)  # (file, line) of each
+    told: set[one_frame.Place] = field(default_factory=set)  # problems that path_arrays has found
 
-    def gap(self, line, file, again=True):
+    def gap(self, line: int, file: str, again: bool = True) -> None:
         """Marks that motions are left out here: the path beyond must not be joined over it. ``again``:
         also where one is marked already."""
+        if self.left_out[-1:] != [(file, line)]:  # once a statement
+            self.lost += 1
+            self.left_out.append((file, line))
         if again or not self.motions or self.motions[-1].kind != "GAP":
             self.motions.append(Motion("GAP", None, line, file))
 
-    def in_one_frame(self):
-        """The motions with all poses in one frame (``one_frame``); what is left out becomes a problem, once."""
-        from . import one_frame
+    def need(self, reason: Reason) -> None:
+        """Asks for what a Reason wants: something that a path consists of depends on it."""
+        if reason.wants is not None:
+            self.asked.setdefault(*reason.wants)
 
+    def in_one_frame(self) -> list[Motion]:
+        """The motions with all poses in one frame (``one_frame``); what is left out becomes a problem, once."""
         motions, problems = one_frame.motions(self)
         for file, line, fact in problems:
             if (file, line, fact) not in self.told:
@@ -161,18 +229,43 @@ class Program:
                 self.problem(file, line, fact)
         return motions
 
-    def check_holding(self, holding):
+    def check_holding(self, holding: str | None) -> None:
         """Adds a problem where the cell holds part and tool otherwise than the program does."""
-        from . import one_frame
-
         for file, line, fact in one_frame.holding_problems(self, holding):
             self.problem(file, line, fact)
 
-    def problem(self, file, line, told, text=None, /, **arguments):
+    def tell_joints(self) -> None:
+        """Adds a problem, once, where feed motions go to joint targets."""
+        by_joints = [m for m in self.motions if m.kind != "PTP" and m.joints_deg is not None]
+        if not by_joints:
+            return
+        fact = Fact(
+            "programs.joints_without_robot",
+            "{count} motions on a path, the first here, go to joint positions and are left out: where these lie "
+            "the robot's model says, which the job gives",
+            count=len(by_joints),
+        )
+        place = self.file, by_joints[0].line, fact
+        if place not in self.told:
+            self.told.add(place)
+            self.problem(*place)
+
+    def counted(self) -> tuple[int, int]:
+        """(motions that are read, motions in the program): poses and joint targets, and with them what is left
+        out."""
+        read = sum(m.kind != "GAP" and not m.aux for m in self.in_one_frame())
+        said = sum(m.kind != "GAP" and not m.aux for m in self.motions)
+        return read, said + self.lost
+
+    def problem(
+        self, file: str, line: int, told: Told, text: str | None = None, /, **arguments: object
+    ) -> None:
         """Adds a Problem; the arguments are those of its class."""
         self.problems.append(Problem(file, line, told, text, **arguments))
 
-    def path_arrays(self, default_speed_mm_s, pose_of=None):
+    def path_arrays(
+        self, default_speed_mm_s: float, pose_of: Callable[[Sequence[float]], Floats] | None = None
+    ) -> dict[str, Array]:
         """Poses as the simulator takes them: dict of frames (n, 4, 4) in mm, feeds (n,) in mm/s,
         forces (n,) in N (-1: none), rapid (n,) bool, lines (n,) int, zones (n,) in mm (0: exact
         stop, -1: not known), gaps (n,) int: the line from which on motions are left out before this
@@ -184,28 +277,35 @@ class Program:
         poses too, and there is joints (n, 6) in degrees, NaN where none are given.
         """
         motions = self.in_one_frame()
-        if pose_of is not None:
+        if pose_of is None:
+            self.tell_joints()
+        else:
             motions = [
                 m if m.joints_deg is None else replace(m, pose=pose_of(m.joints_deg))
                 for m in motions
             ]
-        rows, previous, aux, lost, gap = [], None, None, False, 0
+        rows: list[list[Any]] = []
+        previous: Floats | None = None
+        aux: Floats | None = None
+        lost, gap = False, 0
         for motion, following in zip(motions, [*motions[1:], None]):
             check()
             if motion.pose is None:
-                gap = gap or (motion.line if motion.kind == "GAP" else 0)
+                gap = gap or (0 if motion.kind == "PTP" else motion.line)
                 aux, lost = None, True  # where the joint target is, only the robot's geometry tells
                 if rows:  # nor in which direction a corner before it would be rounded
                     rows[-1][-1] = 0.0
                 continue
             if motion.aux:
-                aux = motion
+                aux = motion.pose
                 continue
             rapid = motion.kind == "PTP" or lost or previous is None
             poses = [motion.pose]
-            if aux is not None and not rapid:
-                poses = _arc(previous, aux.pose, motion.pose, motion.turn)
-            elif motion.turn.startswith("hold") and not rapid:
+            if previous is None or rapid:
+                pass
+            elif aux is not None:
+                poses = _arc(previous, aux, motion.pose, motion.turn)
+            elif motion.turn.startswith("hold"):
                 poses = [through_with(motion.pose, previous)]
             speed = motion.speed_mm_s or default_speed_mm_s
             force = -1.0 if motion.force_N is None else motion.force_N
@@ -217,7 +317,7 @@ class Program:
             check_count(len(rows), motion)
             rows[-1][-1] = _zone(motion, following)
             previous, aux, lost, gap = poses[-1], None, False, 0
-        columns = list(zip(*rows)) if rows else [[] for _ in range(8)]
+        columns: list[Sequence[Any]] = list(zip(*rows)) if rows else [[] for _ in range(8)]
         frames = np.array(columns[0], dtype=float).reshape(-1, 4, 4)
         arrays = {
             "frames": frames,
@@ -233,7 +333,7 @@ class Program:
         return arrays
 
 
-def check_count(count, motion):
+def check_count(count: int, motion: Motion) -> None:
     """Raises ProgramError in the line of a Motion with which a path has too many poses."""
     if count > MAX_POSES:
         raise ProgramError.at(
@@ -246,7 +346,7 @@ def check_count(count, motion):
         )
 
 
-def joint_angles(values, scale=1.0):
+def joint_angles(values: Iterable[object], scale: float = 1.0) -> Joints | None:
     """Six angles times ``scale`` (to degrees) for ``Motion.joints_deg``; None unless all are finite
     numbers.
     """
@@ -256,19 +356,19 @@ def joint_angles(values, scale=1.0):
     return tuple(scale * float(v) for v in numbers)
 
 
-def work_of(text):
+def work_of(text: str) -> int:
     """Units of work that following a statement takes: one, and more for a long one."""
     return 1 + len(text) // 25
 
 
-def _zone(motion, following):
+def _zone(motion: Motion, following: Motion | None) -> float:
     """mm; -1: not known; inf: the robot passes through."""
     if motion.zone_mm is not None:
         return motion.zone_mm
     return math.inf if following and motion.kind == following.kind == "SPL" else -1.0
 
 
-def _finite(zones, frames):
+def _finite(zones: Floats, frames: Floats) -> Floats:
     """Passing through as a length: the neighbouring poses' distance, but no further than the rounded
     corner, which lies zone |v - u| / 4 inside (u, v: the directions), stays within
     ``PASSING_ERROR`` of the pose."""
@@ -286,7 +386,7 @@ def _finite(zones, frames):
     return np.where(passing, reach, zones)
 
 
-def bytes_of(path, language):
+def bytes_of(path: Path | str, language: str) -> bytes:
     """The bytes of a program's text. Raises ProgramError where there are none, or it is no text."""
     try:
         raw = read_regular(path, MAX_FILE)
@@ -302,7 +402,7 @@ def bytes_of(path, language):
     return raw
 
 
-def lines_of(text, file):
+def lines_of(text: str, file: str) -> list[str]:
     """The lines of a program's text, whatever ends them. Raises ProgramError for one without end:
     what looks at a line must not take long, so that reading can be cancelled.
     """
@@ -320,12 +420,12 @@ def lines_of(text, file):
     return lines
 
 
-def name_of(path):
+def name_of(path: Path | str) -> str:
     """How a program's file is named in messages."""
     return shown(Path(path).name)
 
 
-def _arc(start, through, end, turn=""):
+def _arc(start: Floats, through: Floats, end: Floats, turn: str = "") -> list[Floats]:
     """Poses after ``start`` on the circle through three points; ``turn``: as a Motion's."""
     circle = circle_through(start, through, end)
     if circle is None:
@@ -344,14 +444,14 @@ def _arc(start, through, end, turn=""):
     return [*poses[:-1], through_with(end, last)]
 
 
-def circle_through(start, through, end):
+def circle_through(start: Floats, through: Floats, end: Floats) -> Circle | None:
     """(centre, x axis to the start, y axis, radius, angle to the end by way of ``through``) of the
     circle through three poses, mm and radians; None where they lie on a line."""
     a, b, c = (pose[:3, 3] for pose in (start, through, end))
     u, v = b - a, c - a
     normal = np.cross(u, v)
     size = float(normal @ normal)
-    if size < 1e-18 * max(u @ u, v @ v, 1e-300) ** 2 or size == 0.0:
+    if size < 1e-18 * max(float(u @ u), float(v @ v), 1e-300) ** 2 or size == 0.0:
         return None
     centre = a + np.cross((u @ u) * v - (v @ v) * u, normal) / (2.0 * size)
     radius = float(np.linalg.norm(a - centre))
@@ -361,7 +461,7 @@ def circle_through(start, through, end):
     return centre, x_axis, y_axis, radius, angle
 
 
-def turned(start, end, circle, turn, shares):
+def turned(start: Floats, end: Floats, circle: Circle, turn: str, shares: Floats) -> Floats:
     """Rotations (n, 3, 3) at ``shares`` (n,) of a circle (as ``circle_through``), by a Motion's ``turn``."""
     _, x_axis, y_axis, _, angle = circle
     first, last = start[:3, :3], end[:3, :3]
@@ -377,14 +477,14 @@ def turned(start, end, circle, turn, shares):
     return about[:-1] @ first @ powers(own, shares)
 
 
-def through_with(through, orientation):
+def through_with(through: Floats, orientation: Floats) -> Floats:
     """The position of ``through`` with the orientation of another pose."""
     pose = through.copy()
     pose[:3, :3] = orientation[:3, :3]
     return pose
 
 
-def powers(rotation, shares):
+def powers(rotation: Floats, shares: Floats) -> Floats:
     """The rotations (n, 3, 3) by ``shares`` (n,) of the angle of ``rotation`` (3, 3): slerp from the
     identity."""
     quaternion = to_quaternions(rotation[None])[0]

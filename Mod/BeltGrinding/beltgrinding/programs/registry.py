@@ -1,117 +1,85 @@
-"""The robot languages that are read: each is one module with ``read(path) -> Program``, registered in
-``READERS`` by its suffix.
+"""The robot languages that are read: each is a module or a package's ``reader`` with ``read(path) -> Program``,
+registered in ``READERS`` by its suffixes.
 """
+
+from __future__ import annotations
 
 import contextlib
 import gc
 import os
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+from ..base.kinds import Json
 from ..base.regular_files import open_regular, shown
 from ..engine import InputError
-from . import given
-from .given import beside as values_beside  # noqa: F401
-from .given import parsed as check_values  # noqa: F401
-from .program import MAX_FILE, ProgramError
-from .readers.roll import lay
-from .readers.side_files import side_files  # noqa: F401
-from .readers.speeds import told as told_problems  # noqa: F401
+from . import given, left_out
+from .problems import LOST, grade, ordered
+from .program import MAX_FILE, ProgramError, bytes_of, lines_of, name_of
+from .languages.roll import lay
+from .languages.side_files import side_files as side_files
+from .languages import speeds
+
+if TYPE_CHECKING:
+    from .program import Problem, Program
+
+values_beside, check_values = given.beside, given.parsed
 
 
-def _krl(path, values=None):
-    from .readers.krl import reader as krl
+@dataclass(frozen=True)
+class Reader:
+    """A language by the name of its package or module, imported when a program of it is read; ``takes``: what a
+    person may give it."""
 
-    return krl.read(path, values)
+    name: str
+    takes: str = ""  # "variables"; "units" of length where the file does not say them
 
-
-def _csv(path):
-    from .readers import csv as csv_program
-
-    return csv_program.read(path)
-
-
-def _rapid(path, values=None):
-    from .readers.rapid import reader as rapid
-
-    return rapid.read(path, values)
-
-
-def _urscript(path):
-    from .readers.urscript import reader as urscript
-
-    return urscript.read(path)
+    def __call__(self, path: Path, known: Mapping[str, Any] | None = None) -> Program:
+        """The Program of a file; ``known``: what ``given`` has read."""
+        module = import_module(f"{__package__}.languages.{self.name}")
+        if hasattr(module, "__path__"):
+            module = import_module(f"{module.__name__}.reader")
+        given_to = (known[self.takes],) if known and self.takes else ()
+        program: Program = module.read(path, *given_to)
+        return program
 
 
-def _apt(path):
-    from .readers import apt
-
-    return apt.read(path)
-
-
-def _gcode(path):
-    from .readers import gcode
-
-    return gcode.read(path)
-
-
-def _fanuc(path, values=None):
-    from .readers.fanuc import reader as fanuc
-
-    return fanuc.read(path, values)
-
-
-def _inform(path):
-    from .readers.inform import reader as inform
-
-    return inform.read(path)
-
-
-def _val3(path):
-    from .readers.val3 import reader as val3
-
-    return val3.read(path)
-
-
-def _urp(path):
-    from .readers.urp import reader as urp
-
-    return urp.read(path)
-
-
-READERS = {
-    ".src": _krl,
-    ".csv": _csv,
-    ".mod": _rapid,
-    ".modx": _rapid,
-    ".prg": _rapid,
-    ".sys": _rapid,
-    ".script": _urscript,
-    ".ls": _fanuc,
-    ".jbi": _inform,
-    ".apt": _apt,
-    ".cls": _apt,
-    ".cl": _apt,
-    ".pgx": _val3,
-    ".dtx": _val3,
-    ".urp": _urp,
-    ".nc": _gcode,
-    ".ngc": _gcode,
-    ".gcode": _gcode,
-    ".mpf": _gcode,
-    ".tap": _gcode,
+_LANGUAGES = {
+    Reader("krl", "variables"): (".src",),
+    Reader("csv"): (".csv",),
+    Reader("rapid", "variables"): (".mod", ".modx", ".prg", ".sys"),
+    Reader("urscript"): (".script",),
+    Reader("fanuc", "variables"): (".ls",),
+    Reader("inform", "variables"): (".jbi",),
+    Reader("apt", "units"): (".apt", ".aptsource", ".ncl", ".cls", ".cl"),
+    Reader("val3"): (".pgx", ".dtx"),
+    Reader("urp"): (".urp",),
+    Reader("kawasaki", "variables"): (".as", ".pg"),
+    Reader("gcode", "units"): (".nc", ".ngc", ".gcode", ".mpf", ".spf", ".tap"),
+    Reader("klartext"): (".h",),
 }
+READERS = {suffix: reader for reader, suffixes in _LANGUAGES.items() for suffix in suffixes}
 
 
-WITH_VARIABLES = (_krl, _fanuc, _rapid)  # which take variables that a person gives
+# Files that hold what a program of the other suffix uses: nothing in them moves the robot.
+DATA_OF = {".dat": ".src", ".pjx": ".pgx", ".pgf": ".mod", ".lsb": ".src", ".xfu": ".pgx"}
 
 
-def file_pattern():
+def told_problems(program: Program, speed_mm_s: float | None) -> list[Problem]:
+    """The Problems of a Program as ``languages.speeds.told`` gives them, what matters most to the path first."""
+    return ordered(speeds.told(program, speed_mm_s))
+
+
+def file_pattern() -> str:
     """What a file dialog shows: "*.src *.csv ..."; suffixes in upper case as well."""
     return " ".join(f"*{s} *{s.upper()}" for s in sorted(READERS))
 
 
 @contextlib.contextmanager
-def _no_collection():
+def _no_collection() -> Iterator[None]:
     """Reading makes many objects that stay and hardly a cycle: looking for garbage all the while
     takes a third of the time."""
     enabled = gc.isenabled()
@@ -123,47 +91,67 @@ def _no_collection():
             gc.enable()
 
 
-def read_program(path, roll=None, roll_direction=None, values=None):
+def read_program(
+    path: Path | str,
+    roll: str | None = None,
+    roll_direction: Sequence[float] | None = None,
+    values: Json | Path | str | None = None,
+    units: str | None = None,
+) -> Program:
     """The Program in the file ``path``, its language told by the suffix. Raises ProgramError.
 
-    ``roll``, ``roll_direction``: how poses with a free roll are turned (``readers.roll.lay``).
+    ``roll``, ``roll_direction``: how poses with a free roll are turned (``languages.roll.lay``).
     ``values``: what only the controller knows (``given``), as the content of a values file (a dict) or as
-    its file; without it NAME.values.json beside the program, where there is one.
+    its file; without it NAME.values.json beside the program, where there is one. ``units``: "mm" or "inch" of a
+    file that does not say it, before that of the values.
     """
     path = Path(path)
     reader = READERS.get(path.suffix.lower())
+    if reader is None and path.suffix.lower() in DATA_OF:
+        raise ProgramError(
+            "programs.data_only",
+            "{file}: holds data, no motion; give {program} instead",
+            file=shown(path),
+            program=shown(path.stem + DATA_OF[path.suffix.lower()]),
+        )
     if reader is None:
-        known = ", ".join(sorted(READERS))
         raise ProgramError(
             "programs.unknown_suffix",
             "{file}: no robot language is known by '{suffix}'; known: {known}",
             file=shown(path),
             suffix=shown(path.suffix),
-            known=known,
+            known=", ".join(sorted(READERS)),
         )
     try:
         open_regular(path, MAX_FILE).close()  # before anything looks at what lies beside it
     except InputError as error:
         raise ProgramError.of(error) from None
-    if isinstance(values, dict):
+    known: dict[str, Any] | None
+    if isinstance(values, Mapping):
         side = Path(f"{path.name}: values")
         known = given.parsed(values, shown(side.name))
     else:
         side = Path(values) if values else given.beside(path)
         known = given.load(side) if values or os.path.isfile(side) else None
+    if units:
+        known = {**(known or given.parsed({}, "")), "units": units}
     with _no_collection():
-        if known and reader in WITH_VARIABLES:
-            program = reader(path, known["variables"])
-        else:
-            program = reader(path)
+        try:
+            program = reader(path, known)
+        except RecursionError:
+            nested = ProgramError("programs.nested_calls", "calls are nested too deeply")
+            raise nested.within("programs.in_file", "{file}: ", file=name_of(path)) from None
         if known:
             given.apply(program, known, shown(side.name))
         lay(program, roll, roll_direction)
-    if not program.motions and not program.problems:
+    if program.left_out and path.suffix.lower() in left_out.WORDS:
+        text = bytes_of(path, program.language).decode("latin-1")
+        program.lost += left_out.more(program, path.suffix.lower(), lines_of(text, program.file))
+    if not program.motions and all(grade(problem) != LOST for problem in program.problems):
         program.problem(
             program.file,
             1,
             "programs.no_motion",
-            "no instruction of the program moves the robot; there is no pose to read",
+            "no instruction of the program moves the robot; give the file that commands the motions",
         )
     return program

@@ -1,7 +1,10 @@
 """A program as a table of its programmed poses, and in figures."""
 
+from __future__ import annotations
+
 import csv
 import io
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -9,12 +12,16 @@ from ..base.cells import cell
 from ..base.frames import to_quaternions
 from ..base.grouping import grouped
 from . import one_frame
+from .problems import ordered
+
+if TYPE_CHECKING:
+    from .program import Program
 
 COLUMNS = "index,motion,x_mm,y_mm,z_mm,qw,qx,qy,qz,speed_mm_s,tool,base,file,line".split(",")
 SHOWN = 20  # problems in a summary, or kinds of them
 
 
-def poses_csv(program):
+def poses_csv(program: Program) -> str:
     """One row for every programmed pose in program order, an arc's auxiliary point with one of its
     own (motion CIRC-AUX); mm and unit quaternions in the motion's base; joint targets have none.
     """
@@ -35,13 +42,16 @@ def poses_csv(program):
     return text.getvalue()
 
 
-def summary(program, everything=False):
-    """Language, motions by kind, frames, extents (mm) and problems, as a dict; problems of a kind as one,
-    unless ``everything`` is asked for."""
+def summary(program: Program, everything: bool = False) -> dict[str, Any]:
+    """Language, motions by kind, how many of those in the program are read, frames, extents (mm) and problems,
+    those that matter most to the path first, as a dict; problems of a kind as one, unless ``everything`` is asked for.
+    """
     moved = program.in_one_frame()
-    found = program.problems
+    found = ordered(program.problems)
+    read, said = program.counted()
     problems = found if everything else grouped(found)[:SHOWN]
-    kinds, gaps = {}, 0
+    kinds: dict[str, int] = {}
+    gaps = 0
     for motion in program.motions:
         if motion.kind == "GAP":
             gaps += 1
@@ -59,6 +69,8 @@ def summary(program, everything=False):
         "file": program.file,
         "motions": len(program.motions) - gaps,
         "gaps": gaps,
+        "read": read,
+        "in_program": said,
         "poses": len(places),
         "kinds": kinds,
         "bases": sorted({m.base for m in program.motions if m.base}),

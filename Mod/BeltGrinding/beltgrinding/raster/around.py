@@ -1,10 +1,16 @@
 """Passes round faces: rings on closed faces, and the helix on surfaces of revolution."""
 
+from __future__ import annotations
+
 import copy
 import math
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ..base.kinds import Array, Floats, Json
 from ..engine import InputError
 
 ROUND = 0.05  # sine, root mean square, between normals and the planes through an axis of revolution
@@ -20,7 +26,7 @@ class Axis:
     revolution; ``turn``: the share of a full turn that they take about it.
     """
 
-    def __init__(self, points, normals, areas):
+    def __init__(self, points: Floats, normals: Floats, areas: Floats) -> None:
         """By the lines along the normals (n, 3) at points (n, 3), mm: those of a surface of revolution all meet its
         axis, least squares of n (a x x + b) over axes (Pottmann, Randrup: Rotational and helical surface
         approximation for reverse engineering, Computing 60, 1998). Else the direction that they have least of.
@@ -32,14 +38,14 @@ class Axis:
         x = moved / max(size, 1e-12)
         rows = np.hstack([np.cross(x, normals), normals])
         matrix = (rows * weight[:, None]).T @ rows
-        self.place, self.way, self.revolution = middle, None, False
+        self.place, self.way, self.revolution = middle, np.zeros(3), False
         # Without b: what of the equation b can take up is taken out (Schur complement).
         a, b, c = matrix[:3, :3], matrix[:3, 3:], matrix[3:, 3:]
         back = np.linalg.pinv(c, rcond=1e-9, hermitian=True) @ b.T
         mean = normals.T @ weight
         spread = np.linalg.eigh((normals * weight[:, None]).T @ normals)[1].T
 
-        def revolved(ways):
+        def revolved(ways: Iterable[Floats]) -> list[tuple[float, Axis]]:
             """(unevenness, Axis) of those of the ways that are an axis of revolution."""
             found = []
             for way in ways:
@@ -73,7 +79,7 @@ class Axis:
             if not self.revolution or tube.turn >= CLOSED:
                 self.__dict__ = tube.__dict__
 
-    def _settle(self, points, weight):
+    def _settle(self, points: Floats, weight: Floats) -> float:
         """Turns the axis up, and finds the share of a turn that the points take. Returns how unevenly they lie round
         it: the standard deviation of the sectors' weights."""
         k = int(np.argmax(abs(self.way)))
@@ -84,7 +90,9 @@ class Axis:
         return np.bincount(_sectors(angles), weight, SECTORS).std()
 
     @staticmethod
-    def _error(points, normals, weight, place, way):
+    def _error(
+        points: Floats, normals: Floats, weight: Floats, place: Floats, way: Floats
+    ) -> float:
         """Root mean square of the sine between the normals and the planes through an axis."""
         off = points - place
         tangent = np.cross(way, off)
@@ -93,15 +101,15 @@ class Axis:
         sine = (normals[sound] * tangent[sound]).sum(axis=1) / length[sound]
         return math.sqrt((sine**2) @ weight[sound] / weight[sound].sum())
 
-    def heights(self, points):
+    def heights(self, points: Floats) -> Floats:
         """mm (n,) along the axis."""
         return (points - self.place) @ self.way
 
-    def radii(self, points):
+    def radii(self, points: Floats) -> Floats:
         """mm (n,) from the axis."""
         return np.linalg.norm(np.cross(points - self.place, self.way), axis=1)
 
-    def angles(self, points):
+    def angles(self, points: Floats) -> Floats:
         """rad (n,) about the axis, -pi to pi."""
         first = np.cross(self.way, np.eye(3)[int(np.argmin(abs(self.way)))])
         first /= np.linalg.norm(first)
@@ -109,17 +117,17 @@ class Axis:
         return np.arctan2(off @ np.cross(self.way, first), off @ first)
 
 
-def _sectors(angles):
+def _sectors(angles: Floats) -> NDArray[np.int_]:
     """Number of the sector (n,) in which angles (n,) rad, -pi to pi, lie."""
     return ((angles + math.pi) / (2.0 * math.pi) * SECTORS).astype(int) % SECTORS
 
 
-def _turn(angles):
+def _turn(angles: Floats) -> float:
     """The share of a full turn that angles (n,) rad take."""
     return len(np.unique(_sectors(angles))) / SECTORS
 
 
-def sheet(points, normals, triangles, areas):
+def sheet(points: Floats, normals: Floats, triangles: Array, areas: Floats) -> dict[str, Any]:
     """dict(scalars (m, 3), angles (n,) rad or None, profile (n,) mm or None) of faces, triangles (m, 3) on points
     (n, 3) with normals and areas, mm: the scalar does not change round them. A helix has angles and the length along
     the profile of a surface of revolution. Raises InputError for faces that do not go round.
@@ -145,7 +153,7 @@ def sheet(points, normals, triangles, areas):
     return found
 
 
-def _along_profile(place, other, weight):
+def _along_profile(place: Floats, other: Floats, weight: Floats) -> Floats:
     """mm (n,) along the profile of a surface of revolution, from the two coordinates of its points."""
     edges = np.linspace(place.min(), place.max(), min(BINS, max(len(place) // 50, 2)) + 1)
     k = np.clip(np.digitize(place, edges) - 1, 0, len(edges) - 2)
@@ -162,7 +170,7 @@ def _along_profile(place, other, weight):
     return found
 
 
-def helix(sheets, pitch):
+def helix(sheets: Sequence[Json], pitch: float) -> list[dict[str, Any]]:
     """Sheets whose level lines are one helix of ``pitch`` mm along the profile. Raises InputError where a sheet has
     none."""
     found = []

@@ -2,13 +2,17 @@
 the machine's; where it does not fit, a narrower one is named that does.
 """
 
-import copy
+from __future__ import annotations
+
 import math
+from dataclasses import replace
 
 import numpy as np
 
+from ..base.kinds import Context, Facts, Floats, Json, known
 from ..base.quantile import weighted_quantile
 from ..engine import core
+from ..job.settings import BeltMachine, Job
 from .clearing import Clearing
 from .raster_path import validate
 
@@ -26,23 +30,30 @@ WORTHWHILE = (
 BENT = 0.98  # of the area: what is bent more is left out of the look
 
 
-def mount(machine):
-    """Sets by its belt the force of a job's belt machine, how far the force control moves it, and the contact's cells; what
-    was set of the last two, {key: mm}."""
-    run, found = machine["free_run"], {}
+def mounted(machine: BeltMachine) -> tuple[BeltMachine, dict[str, float]]:
+    """(a job's belt machine with the force, how far the force control moves it, and the contact's cells as its belt wants
+    them; what was set of the last two, {key: mm})."""
+    run, found = known(machine.free_run), {}
     per_width = FORCE_PER_WIDTH
-    if machine["kind"] == "free_belt":
-        per_width = min(per_width, OF_TENSION * run["tension_N_per_mm"])
+    if machine.kind == "free_belt":
+        per_width = min(per_width, OF_TENSION * run.tension_N_per_mm)
         # A membrane's middle gives way by F L / (4 H) under a line across it.
-        gives = per_width * run["length_mm"] / (4.0 * run["tension_N_per_mm"])
-        found["force_travel_mm"] = max(float(math.ceil(ROOM * gives)), machine["force_travel_mm"])
-    machine["force_N"] = max(float(f"{per_width * run['width_mm']:.2g}"), 1.0)
-    found["contact_spacing_mm"] = max(LEAST_CELL, float(f"{run['width_mm'] / CELLS:.2g}"))
-    machine.update(found)
-    return found
+        gives = per_width * run.length_mm / (4.0 * run.tension_N_per_mm)
+        found["force_travel_mm"] = max(float(math.ceil(ROOM * gives)), machine.force_travel_mm)
+    force = max(float(f"{per_width * run.width_mm:.2g}"), 1.0)
+    found["contact_spacing_mm"] = max(LEAST_CELL, float(f"{run.width_mm / CELLS:.2g}"))
+    return replace(machine, force_N=force, **found), found
 
 
-def direction(job, shape, field, along, look, notes, context):
+def direction(
+    job: Job,
+    shape: core.Shape,
+    field: core.HeightField,
+    along: Floats,
+    look: Json,
+    notes: Facts,
+    context: Context,
+) -> Floats:
     """Unit direction (3,) of the passes, along which the belt runs: ``along``, that in which the faces are longest, or
     that square to it in the faces. The belt is stiff across: of directions on which it fits nearly as well, that
     across which the faces are bent less.
@@ -66,16 +77,18 @@ def direction(job, shape, field, along, look, notes, context):
     return ways[best]
 
 
-def _bent(curvature, areas):
+def _bent(curvature: Floats, areas: Floats) -> float:
     return weighted_quantile(np.abs(curvature), areas, BENT)
 
 
-def _unfit(clearing, job, frames, areas, width=None):
+def _unfit(
+    clearing: Clearing, job: Job, frames: Floats, areas: Floats, width: float | None = None
+) -> float:
     """Share of the area that the belt, of its own or another width, does not get to: no part of it lies there, where it
     fits at one of the places."""
     if width is not None:
-        job = {**job, "belt_machine": copy.deepcopy(job["belt_machine"])}
-        job["belt_machine"]["free_run"]["width_mm"] = width
+        run = replace(known(job.belt_machine.free_run), width_mm=width)
+        job = replace(job, belt_machine=replace(job.belt_machine, free_run=run))
         clearing = clearing.with_wheel(job)
     fits = clearing.fits_upright(frames)
     if fits.all():
@@ -89,9 +102,11 @@ def _unfit(clearing, job, frames, areas, width=None):
     return float(areas[~fits][~reached.any(axis=1)].sum() / max(areas.sum(), 1e-12))
 
 
-def _does_not_fit(job, clearing, standing, share, look):
+def _does_not_fit(
+    job: Job, clearing: Clearing, standing: tuple[Floats, Floats], share: float, look: Json
+) -> core.Fact:
     """Fact: to what ``share`` of the area the belt does not get, and the widest that does, or of those the best."""
-    width = job["belt_machine"]["free_run"]["width_mm"]
+    width = known(job.belt_machine.free_run).width_mm
     tried = {}
     for one in sorted((w for w in look["widths"] if w < width), reverse=True):
         tried[one] = _unfit(clearing, job, *standing, one)

@@ -6,14 +6,21 @@ one about the feed. A leaned wheel stands on the pass with the point of its prof
 wheel, its edge.
 """
 
+from __future__ import annotations
+
 import copy
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
+from ..base.kinds import Array, Context, Facts, Floats, Json
 from ..cell import collision
 from ..engine import InputError, core
+from ..job.settings import Job
+from ..job.typed import typed
 from . import held, passes, tool as tools
+from .kinds import Levels, Piece
 
 PART_SAMPLES = 400_000  # at most, of the part and of all bodies
 CHORD = 0.2  # of the length on which the wheel stands fit_mm deep in a plane: from sample to sample
@@ -30,9 +37,18 @@ MARGIN = 0.5  # of fit_mm, that a leaned wheel keeps
 class Clearing:
     """Looks whether the wheel of a validated job fits the part, and leans it where it does not."""
 
-    def __init__(self, job, shape, settings, warnings, context, advance=0.0):
+    def __init__(
+        self,
+        job: Job | Json,
+        shape: core.Shape,
+        settings: Json,
+        warnings: Facts,
+        context: Context,
+        advance: float = 0.0,
+    ) -> None:
         """``settings``: validated; ``advance``: as ``tool.of`` takes it. ``blind`` is true where the part cannot be
         sampled: then nothing is known, and everything fits. Raises InputError, Cancelled."""
+        job = typed(job)
         self.settings, self.context = settings, context
         self.fit = settings["fit_mm"]
         most = settings["max_tilt_deg"] if settings["where_it_collides"] == "tilt" else 0.0
@@ -57,25 +73,25 @@ class Clearing:
             )
 
     @property
-    def name(self):
+    def name(self) -> core.Fact:
         """Fact: what it looks at, as a subject."""
         if not self.held.names:
             return self.tool.name
         return core.Fact("raster.with_held", "{tool}, or what goes with it,", tool=self.tool.name)
 
-    def with_wheel(self, job):
+    def with_wheel(self, job: Job | Json) -> Clearing:
         """The same with the wheel of another job on the same part."""
         found = copy.copy(self)
         found.held = copy.copy(self.held)
-        found._mount(job)
+        found._mount(typed(job))
         return found
 
-    def _mount(self, job, advance=0.0):
+    def _mount(self, job: Job, advance: float = 0.0) -> None:
         self.tool = tools.of(job, advance)
-        self.held.mount(job["belt_machine"], advance)
+        self.held.mount(job.belt_machine, advance)
         self._shifts = np.array([self.tool.shift(lean) for lean in self.leans])
 
-    def _solid(self, job, shape, warnings):
+    def _solid(self, job: Job, shape: core.Shape, warnings: Facts) -> Floats:
         """Points (n, 3) of the part and of bodies that are fixed to it."""
         wanted = CHORD * min(self.tool.chord(max(self.fit, NEAR)), self.tool.width)
         area = sum(shape.face_area(face) for face in range(shape.face_count))
@@ -83,16 +99,16 @@ class Clearing:
         part, _ = core.sample_faces(shape, [], spacing, context=self.context)
         points = [part.points]
         _, with_part = held.sides(job)
-        for body in job["cell"]["bodies"]:
-            if body["frame"] not in with_part:
+        for body in job.cell.bodies:
+            if body.frame not in with_part:
                 continue
-            placed = np.linalg.inv(with_part[body["frame"]])
-            mesh = collision.read_body(body, body["name"], warnings, self.context)
+            placed = np.linalg.inv(with_part[body.frame])
+            mesh = collision.read_body(body, body.name, warnings, self.context)
             found = _on_mesh(mesh, wanted, PART_SAMPLES)
             points.append(found @ placed[:3, :3].T + placed[:3, 3])
         return np.vstack(points)
 
-    def depth(self, frames):
+    def depth(self, frames: Floats) -> Floats:
         """mm (n,) that the whole undeformed wheel stands in the part, or in bodies fixed to it, at work_from_contact
         (n, 4, 4); inf where what goes with it meets them, or comes as near as the fit."""
         found = self.tool_depth(frames)
@@ -102,19 +118,19 @@ class Clearing:
         found[free[self.held.first_met(frames[free], self.fit) >= 0]] = np.inf
         return found
 
-    def tool_depth(self, frames):
+    def tool_depth(self, frames: Floats) -> Floats:
         """The same of the wheel alone."""
         if self.blind or not len(frames):
             return np.zeros(len(frames))
         return self.tool.depth(frames, self._points, self.context)
 
-    def fits_upright(self, frames):
+    def fits_upright(self, frames: Floats) -> Array:
         """(n,) bool: the wheel fits as it stands, or is not asked to."""
         if self.settings["where_it_collides"] == "warn":
             return np.ones(len(frames), dtype=bool)
         return self.depth(frames) <= self.fit
 
-    def fits(self, frames, alone=False):
+    def fits(self, frames: Floats, alone: bool = False) -> Array:
         """(n,) bool: the wheel fits, at one of its leans at least; ``alone``: whatever goes with it."""
         depth = self.tool_depth if alone else self.depth
         found = depth(frames) <= self.fit
@@ -125,13 +141,13 @@ class Clearing:
             found[left] = depth(self._leaned(frames[left], k)) <= MARGIN * self.fit
         return found
 
-    def in_the_way(self, frames):
+    def in_the_way(self, frames: Floats) -> list[str]:
         """Names of what goes with the wheel and is in its way at frames (n, 4, 4), what is most often first."""
         met = self.held.first_met(frames, self.fit)
         counts = np.bincount(met[met >= 0], minlength=len(self.held.names))
         return [self.held.names[k] for k in np.argsort(-counts, kind="stable") if counts[k]]
 
-    def cleared(self, levels):
+    def cleared(self, levels: Levels) -> Levels:
         """Pieces of passes by level, as the core's lines (dict(points, normals, tangents (n, 3), closed)), leaned
         where they must be; what fits no way is cut out. Pieces have a ``cut`` (bool, bool) then: ends that lie
         beside a place that is left out.
@@ -148,7 +164,7 @@ class Clearing:
                 tried[k].append(depth)
         result, number = [], 0
         for pieces in levels:
-            kept = []
+            kept: list[Piece] = []
             for piece in pieces:
                 if number in tried:
                     kept += self._chosen(piece, flat[number], np.array(tried[number]))
@@ -158,7 +174,7 @@ class Clearing:
             result.append(kept)
         return result
 
-    def cut(self, strokes):
+    def cut(self, strokes: list[Piece]) -> list[Piece]:
         """Strokes (as ``passes.assemble`` has them) without the poses at which the wheel does not fit: what
         smoothing, bridges and run-outs have changed."""
         if self.blind or self.settings["where_it_collides"] == "warn" or not strokes:
@@ -175,7 +191,7 @@ class Clearing:
                     result.append(part)
         return result
 
-    def heights(self, frames, most):
+    def heights(self, frames: Floats, most: float) -> Floats:
         """mm (n,), up to ``most``, to which the wheel can be lifted along its normal from frames (n, 4, 4) of passes'
         ends without standing in the part; 0: not at all."""
         free, going = np.zeros(len(frames)), np.ones(len(frames), dtype=bool)
@@ -187,10 +203,10 @@ class Clearing:
             free[going] = share * most
         return free
 
-    def ways_blocked(self, contacts, rapid):
+    def ways_blocked(self, contacts: Floats, rapid: Array) -> list[int]:
         """Numbers of the poses that are reached rapidly and through the part, on straight ways; ``contacts``
         (n, 4, 4), ``rapid`` (n,) bool of the way to each pose."""
-        found = []
+        found: list[int] = []
         moves = np.flatnonzero(rapid[1:])
         frames, owner = [], []
         for k in moves:
@@ -204,7 +220,7 @@ class Clearing:
         deep = self.depth(np.concatenate(frames)) > self.fit
         return np.unique(np.array(owner)[deep]).tolist()
 
-    def _by_piece(self, pieces, lean):
+    def _by_piece(self, pieces: Sequence[Piece], lean: int) -> list[Floats]:
         """mm (n,) of each piece."""
         if not pieces:
             return []
@@ -212,14 +228,14 @@ class Clearing:
         found = self.depth(self._leaned(np.concatenate(frames), lean))
         return np.split(found, np.cumsum([len(f) for f in frames])[:-1])
 
-    def frames(self, piece):
+    def frames(self, piece: Piece) -> Floats:
         """work_from_contact (n, 4, 4) at the points of a piece."""
         settings = self.settings
         points = piece["points"] + settings["offset_mm"] * piece["normals"]
         angle = math.radians(settings["belt_angle_deg"])
         return passes.contact_frames(points, piece["normals"], piece["tangents"], angle)
 
-    def _leaned(self, frames, lean):
+    def _leaned(self, frames: Floats, lean: int) -> Floats:
         """Frames by the lean of that number, standing on the same places."""
         if lean == 0:
             return frames
@@ -228,7 +244,7 @@ class Clearing:
         found[:, :3, 3] -= found[:, :3, :3] @ self._shifts[lean]
         return found
 
-    def _chosen(self, piece, fine, depths):
+    def _chosen(self, piece: Piece, fine: Piece, depths: Floats) -> list[Piece]:
         """The pieces that are left of one; ``depths`` (leans, n)."""
         limits = np.where(np.arange(len(self.leans)) == 0, self.fit, MARGIN * self.fit)
         states = _cheapest(depths <= limits[:, None], self.leans)
@@ -260,7 +276,7 @@ class Clearing:
             result[0]["cut"] = (True, True)
         return result
 
-    def _posed(self, piece, states):
+    def _posed(self, piece: Piece, states: Array) -> Piece:
         """The piece with its poses leaned as ``states`` (n,) say."""
         if not states.any():
             return piece
@@ -274,12 +290,12 @@ class Clearing:
         return {**piece, "points": points, "normals": normals, "tangents": tangents}
 
 
-def _about_x(angle):
+def _about_x(angle: float) -> Floats:
     c, s = math.cos(angle), math.sin(angle)
     return np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
 
 
-def _on_mesh(mesh, spacing, most):
+def _on_mesh(mesh: core.TriangleMesh, spacing: float, most: int) -> Floats:
     """Points (n, 3) on a core.TriangleMesh, ``spacing`` mm apart at most, if they are not more than ``most``."""
     p = np.asarray(mesh.vertices, dtype=float)[np.asarray(mesh.triangles)]
     longest = np.linalg.norm(p - np.roll(p, 1, axis=1), axis=2).max(axis=1)
@@ -298,7 +314,7 @@ def _on_mesh(mesh, spacing, most):
     return np.vstack(found)
 
 
-def finer(piece, spacing):
+def finer(piece: Piece, spacing: float) -> Piece:
     """The piece with points no farther apart than ``spacing`` mm; ``own`` (n,) bool: those that it had."""
     p = piece["points"]
     count = np.maximum(np.ceil(np.linalg.norm(np.diff(p, axis=0), axis=1) / spacing), 1).astype(int)
@@ -314,18 +330,18 @@ def finer(piece, spacing):
     return found
 
 
-def part_of(piece, places):
+def part_of(piece: Piece, places: Array) -> Piece:
     """The piece's points of these numbers."""
     return {**piece, **{name: piece[name][places] for name in ("points", "normals", "tangents")}}
 
 
-def runs(wanted):
+def runs(wanted: Array) -> list[Array]:
     """Index arrays of the runs in which ``wanted`` (n,) is true."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], wanted, [False]]).astype(int)))
     return [np.arange(a, b) for a, b in zip(edges[::2], edges[1::2])]
 
 
-def _cheapest(fits, leans):
+def _cheapest(fits: Array, leans: Floats) -> Array:
     """For each place the number of its lean, -1: left out, such that the sum of the costs is least (dynamic
     programming over the places). ``fits``: (leans, n) bool."""
     scale = max(abs(leans).max(), 1e-9)

@@ -1,13 +1,22 @@
 """Which way the passes go best: each way is laid and ground by the simulator on a coarse field, and compared."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..base.kinds import Array, Context, Json
 from ..engine import InputError, core
-from ..job import engine_input
+from ..job.settings import Job
 from ..job.workpiece import apply_stock
 from . import around, path_check, tool
+
+if TYPE_CHECKING:
+    from ..job.engine_input import EngineInput
 
 SAMPLES = 6_000  # on the faces, about
 ACROSS = 4.0  # of them across the contact's width, if that is finer
@@ -21,7 +30,7 @@ ROUND = 0.75  # of a turn, that coarse samples of closed faces take at least
 FLAT = 0.3  # of its unit length, the mean of the normals of faces that look one way
 
 
-def candidates(field, angles=ANGLES):
+def candidates(field: core.HeightField, angles: Sequence[float] = ANGLES) -> list[dict[str, Any]]:
     """Settings of the ways that are tried, for a core.HeightField of the faces: list of dict(along, direction)."""
     points, weight = field.points, field.areas[:, None].astype(float)
     middle = (points * weight).sum(axis=0) / weight.sum()
@@ -47,34 +56,46 @@ def candidates(field, angles=ANGLES):
     ]
 
 
-def best(job, shape, faces, settings, lay, context=None):
-    """Lays passes every way of ``candidates`` and takes the one that leaves least.
+def best(
+    job: Job,
+    given: EngineInput,
+    shape: core.Shape,
+    faces: Sequence[int],
+    settings: Json,
+    lay: Callable[[Json, Context], dict[str, Any]],
+    context: Context = None,
+) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+    """Lays passes every way of ``candidates`` and takes the one that leaves least; ``given``: the job's EngineInput.
 
     ``lay(settings, context)`` gives a path with contacts, feeds and so on as ``raster_path.raster`` does. Returns
     (settings of the best way, list of dict(along, direction, residual, untouched, duration_s, poses, chosen, no_room,
     error: why there is no path) of all ways). residual: standard deviation of the removal over the area, by its mean:
     what stays of an allowance that comes off on the mean; untouched: of the area; duration_s: at constant feed.
-    Raises InputError (no way gives a path), Cancelled.
+    A way whose path takes nothing off is as one without a path. Raises InputError (no way gives a path), Cancelled.
     """
     context = context or core.RunContext()
     area = sum(shape.face_area(face) for face in faces)
     coarse, _ = core.sample_faces(shape, list(faces), math.sqrt(area / SAMPLES), context=context)
     angles = BELT_ANGLES if tool.of(job).belt else ANGLES
-    tried, ways, first = [], candidates(coarse, angles), None
+    tried: list[dict[str, Any]] = []
+    ways = candidates(coarse, angles)
+    first: InputError | None = None
     if settings["order"] == "helix":
         ways = [{"along": "rings"}]
     for way in ways:
-        one = {**way, "chosen": False}
+        one: dict[str, Any] = {**way, "chosen": False}
         tried.append(one)
         try:
             path = lay({**settings, **way, "footprint": "cylinder"}, context)
+            judged = _judged(job, given, shape, faces, area, settings, path, context)
         except InputError as error:
             first = first or error
             one["error"] = error
             continue
-        one.update(_judged(job, shape, faces, area, settings, path, context))
+        one.update(judged)
     laid = [k for k, one in enumerate(tried) if "residual" in one]
     if not laid:
+        assert first is not None
         raise first
     # One that only lies as if the wheel fitted is worse than any other.
     laid = [k for k in laid if not tried[k]["no_room"]] or laid
@@ -85,40 +106,56 @@ def best(job, shape, faces, settings, lay, context=None):
     return ways[chosen], tried
 
 
-def _judged(job, shape, faces, area, settings, path, context):
-    """What a path leaves, by the simulator: dict(residual, untouched, duration_s, no_room, poses)."""
+def _judged(
+    job: Job,
+    given: EngineInput,
+    shape: core.Shape,
+    faces: Sequence[int],
+    area: float,
+    settings: Json,
+    path: Json,
+    context: Context,
+) -> dict[str, Any]:
+    """What a path leaves, by the simulator: dict(residual, untouched, duration_s, no_room, poses). Raises InputError for
+    one that takes nothing off, Cancelled.
+    """
     width = path["contact_width_mm"] or path["step_over_mm"]
     spacing = max(min(math.sqrt(area / SAMPLES), width / ACROSS), math.sqrt(area / MOST_SAMPLES))
     field, _ = core.sample_faces(shape, list(faces), spacing, context=context)
-    wheel, compliance, law, options = engine_input.engine_arguments(job)
-    if not options["force_control"]:  # the stock decides what comes off
-        apply_stock(field, job["stock"], [], context)
+    machine, steps = given.machine, given.simulation
+    if machine.control != "force":  # the stock decides what comes off
+        apply_stock(field, job.stock, [], context)
     before = field.height.astype(float)
     step, pressing = STEP * max(path["contact_length_mm"], spacing), tool.of(job)
     turn = 2.0 * step / pressing.radius
-    if pressing.belt:  # a step costs a hundred of a wheel's
+    if isinstance(pressing, tool.Belt):  # a step costs a hundred of a wheel's
         step, turn = max(step, sum(p["length_mm"] for p in path["passes"]) / BELT_STEPS), BELT_TURN
-        options.update(pressing.coarse(options))
-    options.update(
-        force=settings["force_N"] or options["force"],
-        max_travel=max(step, options["max_travel"]),
-        max_angle=max(turn, options["max_angle"]),
+        machine = pressing.coarse(machine)
+    given = replace(
+        given,
+        machine=replace(machine, force_N=settings["force_N"] or machine.force_N),
+        simulation=replace(steps, max_travel_mm=max(step, steps.max_travel_mm)),
+        max_angle=max(turn, math.radians(steps.max_angle_deg)),
         must_touch=False,
-        shifted_laws=[],
-        trace=True,
+        shifted_laws=(),
     )
     names = "feeds", "forces", "rapid", "lines", "zones"
     some = _sparse(path, step) if pressing.belt else slice(None)
-    given = {name: path[name][some] for name in names}
-    tool_path = core.ToolPath(frames=path["contacts"][some], **given)
-    core.simulate(field, tool_path, wheel, compliance, law, options, context)
+    columns = {name: path[name][some] for name in names}
+    tool_path = core.ToolPath(frames=path["contacts"][some], **columns)
+    core.simulate(field, tool_path, given, context)
     removed, weight = before - field.height, field.areas.astype(float)
     removed[~np.isfinite(removed)] = 0.0
     mean = (removed * weight).sum() / weight.sum()
+    if not mean > 0.0:
+        raise InputError(
+            "raster.takes_nothing_off",
+            "its path takes nothing off the faces; raise force or coefficient, or give a direction",
+        )
     spread = math.sqrt(((removed - mean) ** 2 * weight).sum() / weight.sum())
     untouched = weight[field.trace["peak_pressure"] <= 0].sum() / weight.sum()
     return {
-        "residual": spread / mean if mean > 0 else math.inf,
+        "residual": spread / mean,
         "untouched": float(untouched),
         "duration_s": float(path_check.motion(path)["time"].sum()),
         "no_room": path["no_room"],
@@ -126,7 +163,7 @@ def _judged(job, shape, faces, area, settings, path, context):
     }
 
 
-def _sparse(path, step):
+def _sparse(path: Json, step: float) -> Array:
     """Numbers of a path's poses, of each pass those that are ``step`` mm apart, about, and its ends."""
     wanted = np.ones(len(path["contacts"]), dtype=bool)
     for one in path["passes"]:

@@ -1,14 +1,24 @@
 """A raster path on its part, as a picture for people without FreeCAD: passes, and what of the faces is left out."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from PIL import Image, ImageDraw
 
+from ..base.kinds import Array, Context, Floats, Json
 from ..engine import core
 from ..inspection import picture
+from ..job.settings import Job
+from ..job.typed import typed
 from ..job.workpiece import read_design
 from . import reachable
+
+if TYPE_CHECKING:
+    from ..inspection.picture import View
 
 SAMPLES = 60_000  # on the faces
 COLOURS = {
@@ -29,11 +39,11 @@ DOT = 5  # pixels
 LETTERS, ROW = 24, 34  # pixels
 
 
-def draw(job, result, context=None):
+def draw(job: Job | Json, result: dict[str, Any], context: Context = None) -> bytes:
     """Bytes of a PNG: the part from two sides with the passes of ``raster_path.raster``'s result, a dot where
     each begins, and the faces in the colour of what is ground and why the rest is not. Raises InputError, Cancelled.
     """
-    shape = read_design(job["design"], context)
+    shape = read_design(typed(job).design, context)
     places = result["places"]
     faces = np.unique(places["faces"]).tolist()
     area = sum(shape.face_area(face) for face in faces)
@@ -55,7 +65,7 @@ def draw(job, result, context=None):
     return picture.png(np.asarray(whole))
 
 
-def _with_passes(view, ways, spacing):
+def _with_passes(view: View, ways: Sequence[Floats], spacing: float) -> Any:
     image = Image.fromarray(view.pixels)
     pen = ImageDraw.Draw(image)
     slack = picture.HIDDEN * spacing
@@ -71,13 +81,13 @@ def _with_passes(view, ways, spacing):
     return image
 
 
-def _faces_us(frames, fine, view):
+def _faces_us(frames: Floats, fine: Floats, view: View) -> Array:
     """(n,) bool of places on a pass: its surface is turned to the camera there."""
     near = reachable.nearest(fine, frames[:, :3, 3])
     return frames[near, :3, 2] @ view.direction > 0.0
 
 
-def _between(points, spacing):
+def _between(points: Floats, spacing: float) -> Floats:
     """Points (k, 3) on the way over points (n, 3), ``spacing`` mm apart at most."""
     count = np.maximum(
         np.ceil(np.linalg.norm(np.diff(points, axis=0), axis=1) / spacing), 1
@@ -87,7 +97,7 @@ def _between(points, spacing):
     return np.vstack([points[i] + share[:, None] * (points[i + 1] - points[i]), points[-1:]])
 
 
-def _legend(image, top, states, places, count):
+def _legend(image: Any, top: int, states: Sequence[int], places: Json, count: int) -> None:
     pen, font = ImageDraw.Draw(image), picture.font(LETTERS)
     areas = places["counted"] if places["counted"].sum() > 0.0 else places["areas"]
     for row, state in enumerate(states):

@@ -6,11 +6,21 @@ touch_force_share of the force, outside the border, and the force grows over the
 that rolls over the border: as much of the force as of the contact is on the face, so that the pressure stays.
 """
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
+from ..base.kinds import Context, Floats, Json
 from ..engine import InputError, core
+from ..job.settings import Job
+
+if TYPE_CHECKING:
+    from .kinds import Room
+    from .tool import Tool
 
 SAMPLES = 40_000  # of the faces that are ground, and of all others, to look for room
 OWN = 0.05  # mm that it may reach deeper into the faces that are ground
@@ -24,14 +34,23 @@ class Entry:
     """What the ends of passes need: ``lead``, mm; ``force``, N, full, None under position
     control."""
 
-    def __init__(self, job, shape, faces, settings, context, length, tool):
+    def __init__(
+        self,
+        job: Job,
+        shape: core.Shape,
+        faces: Sequence[int],
+        settings: Json,
+        context: Context,
+        length: float,
+        tool: Tool,
+    ) -> None:
         """``faces``: those that are ground, from 0; ``length``: mm of the contact along the passes; ``tool``: of
         ``tool.of``. Raises InputError, Cancelled."""
         self.settings, self.context = settings, context
-        machine = job["belt_machine"]
+        machine = job.belt_machine
         self.tool = tool
-        under_force = machine["control"] == "force"
-        self.force = (settings["force_N"] or machine["force_N"]) if under_force else None
+        under_force = machine.control == "force"
+        self.force = (settings["force_N"] or machine.force_N) if under_force else None
         self._half = 0.5 * length if settings["entry"] != "direct" else 0.0
         self.lead = 0.0
         if settings["entry"] == "run_on":
@@ -47,7 +66,7 @@ class Entry:
                 for some in (faces, [k for k in range(shape.face_count) if k not in set(faces)])
             )
 
-    def _samples(self, shape, faces):
+    def _samples(self, shape: core.Shape, faces: Sequence[int]) -> tuple[Floats, Floats] | None:
         """(points, normals) of faces; None: they cannot be sampled."""
         if not faces:
             return np.zeros((0, 3)), np.zeros((0, 3))
@@ -60,7 +79,7 @@ class Entry:
         normals = field.normals.astype(float)
         return np.vstack([field.points] * 2), np.vstack([normals, -normals])
 
-    def leads(self, frames, outwards, most, clearing):
+    def leads(self, frames: Floats, outwards: Floats, most: Floats, clearing: Room) -> Floats:
         """mm that the wheel may stand beyond the ends of passes at ``frames`` (n, 4, 4) along ``outwards``
         (n, 3), ``most`` (n,) at most; 0: no room. There it must stand off the faces that are not ground, and
         reach no deeper into those that are than it does at the end, and than fit_mm; ``clearing``: clearing.Clearing,
@@ -83,7 +102,10 @@ class Entry:
             found[left[fits]] = lead[left[fits]]
         return found
 
-    def _depth(self, frames, samples, whole=False):
+    def _depth(
+        self, frames: Floats, samples: tuple[Floats, Floats] | None, whole: bool = False
+    ) -> Floats:
+        assert samples is not None  # what cannot be sampled is not asked for
         points, normals = samples
         if not len(points) or not len(frames):
             return np.zeros(len(frames))
@@ -91,7 +113,7 @@ class Entry:
             return self.tool.depth(frames, points, self.context)
         return self.tool.depth_before(frames, points, normals, self.context)
 
-    def ramp(self, lead=0.0):
+    def ramp(self, lead: float = 0.0) -> float:
         """mm over which the force grows from where the wheel comes down, ``lead`` mm outside the border: to
         where all of the contact is on the face. Without a lead it is on its border for half of its length at
         once, and what that half does not remove there is missing: a short ramp."""
@@ -99,12 +121,12 @@ class Entry:
             return 0.0
         return self.settings["ramp_mm"] or lead + (1.0 if lead > 0.0 else INSIDE) * self._half
 
-    def ramps(self, leads, length):
+    def ramps(self, leads: Sequence[float], length: float) -> Floats:
         """mm at both ends of ``length`` mm: shorter, where they do not fit in."""
         ramps = np.array([self.ramp(lead) for lead in leads])
         return ramps * min(1.0, length / max(ramps.sum(), STILL))
 
-    def shares(self, places, leads, length):
+    def shares(self, places: Floats, leads: Sequence[float], length: float) -> Floats:
         """Of the full force, at ``places`` (n,) mm from where the wheel comes down, ``length`` mm before it
         lifts off; ``leads``: of both ends, mm."""
         touch, (first, last) = self.settings["touch_force_share"], self.ramps(leads, length)

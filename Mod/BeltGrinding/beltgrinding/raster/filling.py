@@ -1,9 +1,19 @@
 """More passes for what the wheel would get to and the passes at their even distance do not touch: beside walls, between
 obstacles, a place may lie where every pass had to be left out."""
 
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
+from ..base.kinds import Array, Floats, Json
 from . import passes, reachable, region
+from .kinds import Extents, Levels, Piece
+
+if TYPE_CHECKING:
+    from .clearing import Clearing
 
 DENSER = (
     5,
@@ -15,7 +25,14 @@ GAIN = 0.005  # of what is to be filled, that a pass must touch
 MOST = 30  # passes that are added
 
 
-def more(levels_of, seen, clearing, settings, step_over, extents):
+def more(
+    levels_of: Callable[[float], Levels],
+    seen: Json,
+    clearing: Clearing,
+    settings: Json,
+    step_over: float,
+    extents: Extents,
+) -> Levels:
     """Levels, each of one piece, to lay besides.
 
     ``levels_of(step_over)``: passes at that distance, as ``clearing.cleared`` takes them; ``seen``: of
@@ -23,7 +40,7 @@ def more(levels_of, seen, clearing, settings, step_over, extents):
     """
     left = (seen["state"] == reachable.NO_PASS) & (seen["counted"] > 0)
     enough = LEAST * seen["counted"][seen["fits"]].sum()
-    found = []
+    found: list[list[Piece]] = []
     for denser in DENSER:
         if seen["counted"][left].sum() <= enough or len(found) >= MOST:
             break
@@ -45,11 +62,14 @@ def more(levels_of, seen, clearing, settings, step_over, extents):
     return found
 
 
-def _best(touched, areas, enough, most):
+def _best(
+    touched: Sequence[Array], areas: Floats, enough: float, most: int
+) -> tuple[list[int], Array]:
     """(numbers of pieces, at most ``most``, each the one that touches most of what is left, until no more than
     ``enough`` is, (n,) bool: left by them); ``touched``: of each piece (n,) bool; ``areas`` (n,).
     """
-    left, chosen = np.ones(len(areas), dtype=bool), []
+    left = np.ones(len(areas), dtype=bool)
+    chosen: list[int] = []
     while touched and len(chosen) < most and areas[left].sum() > enough:
         gains = [areas[mine & left].sum() for mine in touched]
         best = int(np.argmax(gains))

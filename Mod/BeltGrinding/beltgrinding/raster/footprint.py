@@ -1,14 +1,25 @@
 """How large the contact is across and along the passes: solved where they lie, or on a cylinder."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..base.kinds import Context, Facts, Floats, Json
 from ..base.quantile import weighted_quantile
 from ..engine import InputError, core
-from ..job import contact_extents, engine_input
+from ..job import contact_extents
+from ..job.settings import Job
 from . import passes, tool as tools
+from .kinds import Levels
 from .sheets import curvature_along_and_across
+
+if TYPE_CHECKING:
+    from ..job.engine_input import Elasticity, EngineInput
 
 FLAT = 1e4  # mm; a larger radius of curvature is a plane
 PLACES = 50  # along the passes, at which the contact is solved
@@ -25,12 +36,16 @@ BELT_TOLERANCE = 1e-3  # of a belt's pressure
 DEEPER = 1.5  # times the allowance: so deep position control presses
 
 
-def contact_width(job, settings, surfaces, warnings):
-    """Width of the contact across the pass, mm: the job's wheel under the force, by the job's model
+def contact_width(
+    given: EngineInput, settings: Json, surfaces: Sequence[Json], warnings: Facts
+) -> float:
+    """Width of the contact across the pass, mm: the wheel of a job's EngineInput under the force, by the job's model
     of elasticity, on a cylinder with the faces' median curvature across the passes.
     """
-    wheel, compliance, _, options = engine_input.engine_arguments(job)
-    if compliance["model"] == "geometric":
+    machine = given.machine
+    assert given.elasticity is not None  # a wheel presses
+    elasticity: Elasticity = given.elasticity
+    if given.rigid:
         raise InputError(
             "raster.rigid_step_over",
             "{key}: a rigid tool has no contact width; give a step-over in mm",
@@ -38,15 +53,15 @@ def contact_width(job, settings, surfaces, warnings):
         )
     across, areas = zip(*(curvature_along_and_across(s)[1:] for s in surfaces))
     curvature = weighted_quantile(np.concatenate(across), np.concatenate(areas), 0.5)
-    force = settings["force_N"] or options["force"]
+    force = settings["force_N"] or machine.force_N
     angle = -settings["belt_angle_deg"]  # of the pass against the belt
 
-    def width_on(workpiece):
-        spacing, turned = options["contact_spacing"], math.radians(angle)
-        found = contact_extents.single(wheel, workpiece, compliance, force, spacing, turned)
+    def width_on(workpiece: Json) -> float:
+        spacing, turned = machine.contact_spacing_mm, math.radians(angle)
+        found = contact_extents.single(machine.wheel, workpiece, elasticity, force, spacing, turned)
         return found[1]
 
-    workpiece = {"shape": "plane"}
+    workpiece: dict[str, Any] = {"shape": "plane"}
     if abs(curvature) * FLAT > 1:
         workpiece = {"shape": "cylinder", "radius": 1.0 / curvature, "axis_angle_deg": angle}
     try:
@@ -66,20 +81,23 @@ def contact_width(job, settings, surfaces, warnings):
         return width_on({"shape": "plane"})
 
 
-def belt_extents(job, settings, surfaces, warnings):
+def belt_extents(
+    job: Job, given: EngineInput, settings: Json, surfaces: Sequence[Json], warnings: Facts
+) -> dict[str, Any]:
     """dict(length_mm: along the pass, width_mm: across it, gap_mm: from the flat belt to the part at the contact's edge,
     advance_mm: that the belt gives way) of the contact of a job's free belt or platen on a part with the median curvatures
     of the faces along and across the passes; under position control, of one as deep as the allowance. On a plane it is all
     of the belt between its rollers, or of the platen.
     """
-    options = engine_input.engine_arguments(job)[3]
-    along, across, areas = map(np.concatenate, zip(*map(curvature_along_and_across, surfaces)))
+    machine = given.machine
+    seen = zip(*map(curvature_along_and_across, surfaces))
+    along, across, areas = (np.concatenate(parts) for parts in seen)
     bends = [weighted_quantile(curvature, areas, 0.5) for curvature in (along, across)]
-    pressed = {"force": settings["force_N"] or options["force"]}
-    if not options["force_control"]:
-        pressed = {"approach": DEEPER * max(job["stock"].get("allowance_mm", 0.0), 0.1)}
+    pressed = {"force": settings["force_N"] or machine.force_N}
+    if machine.control != "force":
+        pressed = {"approach": DEEPER * max(job.stock.allowance_mm, 0.1)}
     angle = -math.radians(settings["belt_angle_deg"])
-    found = core.press_belt(options["machine"], *bends, angle, tolerance=BELT_TOLERANCE, **pressed)
+    found = core.press_belt(machine, bends[0], bends[1], angle, tolerance=BELT_TOLERANCE, **pressed)
     length, width = contact_extents.extents(found, angle)
     if not found["converged"] or not width > 0.0:
         # The belt as it is: the contacts along the passes are looked at besides.
@@ -98,29 +116,39 @@ def belt_extents(job, settings, surfaces, warnings):
         "length_mm": length,
         "width_mm": width,
         "gap_mm": _outermost_gap(found),
-        "advance_mm": max(float(found["approach"]), 0.0) if options["force_control"] else 0.0,
+        "advance_mm": max(float(found["approach"]), 0.0) if machine.control == "force" else 0.0,
     }
 
 
-def plane_extents(job, settings):
+def plane_extents(job: Job, given: EngineInput, settings: Json) -> tuple[float, float]:
     """(mm along the pass, mm across it) of the contact on a plane, of the job's wheel under the force. Under
     position control, the wheel's chord at the depth of the allowance, and a little more, and its width.
     """
-    wheel, compliance, _, options = engine_input.engine_arguments(job)
-    machine = job["belt_machine"]
-    if machine["control"] != "force" or compliance["model"] == "geometric":
-        depth = max(job["stock"].get("allowance_mm", 0.0), 0.1)
-        return 2.0 * math.sqrt(2.0 * wheel["radius"] * 1.5 * depth), wheel["width"]
-    force = settings["force_N"] or options["force"]
+    machine, elasticity = given.machine, given.elasticity
+    wheel = machine.wheel
+    if machine.control != "force" or given.rigid:
+        depth = max(job.stock.allowance_mm, 0.1)
+        return 2.0 * math.sqrt(2.0 * wheel.radius_mm * 1.5 * depth), wheel.width_mm
+    assert elasticity is not None  # a wheel presses
+    force = settings["force_N"] or machine.force_N
     # The pass lies at -belt_angle to the belt's travel.
     angle = -math.radians(settings["belt_angle_deg"])
-    spacing = options["contact_spacing"]
-    return contact_extents.single(wheel, {"shape": "plane"}, compliance, force, spacing, angle)
+    spacing = machine.contact_spacing_mm
+    return contact_extents.single(wheel, {"shape": "plane"}, elasticity, force, spacing, angle)
 
 
-def solved(job, shape, faces, levels, settings, plain, context=None):
+def solved(
+    job: Job,
+    given: EngineInput,
+    shape: core.Shape,
+    faces: Sequence[int],
+    levels: Levels,
+    settings: Json,
+    plain: float,
+    context: Context = None,
+) -> dict[str, Any] | None:
     """The contact at ``PLACES`` places along passes, solved by the simulator's own contact on the design as it is
-    sampled, without stock.
+    sampled, without stock; ``given``: the job's EngineInput.
 
     ``levels``: the passes, lists of dict(points, normals, tangents (n, 3)); ``plain``: mm, of its width, about.
     Returns dict(width_mm: across the pass, that of all but the narrowest share ``NARROW``; length_mm: along it, of
@@ -132,17 +160,18 @@ def solved(job, shape, faces, levels, settings, plain, context=None):
     """
     if not any(levels):
         return None
-    wheel, compliance, _, options = engine_input.engine_arguments(job)
-    tool = tools.of(job)
+    machine, tool = given.machine, tools.of(job)
     frames = _places(levels, settings, BELT_PLACES if tool.belt else PLACES)
     area = sum(shape.face_area(face) for face in faces)
     spacing = max(plain / ACROSS, math.sqrt(area / SAMPLES))
     field, _ = core.sample_faces(shape, list(faces), spacing, context=context)
-    force, given = settings["force_N"] or options["force"], options["contact_spacing"]
-    fine = min(given, max(plain / ACROSS, tool.width / MOST_CELLS))
-    options = {**options, "force": force, "contact_spacing": fine, "must_touch": False}
-    if tool.belt:
-        options.update(tool.coarse(options | {"contact_spacing": given}))
+    force = settings["force_N"] or machine.force_N
+    if isinstance(tool, tools.Belt):
+        machine = tool.coarse(machine)
+    else:
+        fine = max(plain / ACROSS, tool.width / MOST_CELLS)
+        machine = replace(machine, contact_spacing_mm=min(machine.contact_spacing_mm, fine))
+    given = replace(given, machine=replace(machine, force_N=force), must_touch=False)
     path = core.ToolPath(
         frames=frames,
         feeds=np.ones(len(frames)),
@@ -152,9 +181,10 @@ def solved(job, shape, faces, levels, settings, plain, context=None):
         zones=np.full(len(frames), -1.0),
     )
     angle = -math.radians(settings["belt_angle_deg"])
-    whole, cut_off = [], []
+    whole: list[tuple[float, float, float]] = []
+    cut_off: list[tuple[float, float, float]] = []
     poses = list(range(len(frames)))
-    for found in core.contacts_at(field, path, poses, wheel, compliance, options, context):
+    for found in core.contacts_at(field, path, poses, given, context):
         if found is None or not found["pressure"].max(initial=0.0) > 0.0:
             continue
         if tool.belt and not found["converged"]:  # its extents are of no use
@@ -178,7 +208,7 @@ def solved(job, shape, faces, levels, settings, plain, context=None):
     }
 
 
-def _places(levels, settings, count):
+def _places(levels: Levels, settings: Json, count: int) -> Floats:
     """work_from_contact (count, 4, 4), evenly along all passes."""
     angle = math.radians(settings["belt_angle_deg"])
     pieces = [piece for pieces in levels for piece in pieces]
@@ -198,13 +228,13 @@ def _places(levels, settings, count):
     return np.array(found)
 
 
-def _outermost_gap(contact):
+def _outermost_gap(contact: Json) -> float:
     """mm between the undeformed wheel and the work, where it touches, beyond that where they are nearest."""
     gaps = contact["gap"][contact["pressure"] > contact_extents.TOUCHED * contact["pressure"].max()]
     return float(np.quantile(gaps, MOST_OF_GAPS) - gaps.min())
 
 
-def _whole(contact):
+def _whole(contact: Json) -> bool:
     """Whether a contact lies on the faces with all its sides: none of its outermost cells is on their border."""
     pressed = contact["pressure"] > contact_extents.TOUCHED * contact["pressure"].max()
     if not contact["pressure"].max() > 0.0:

@@ -1,11 +1,19 @@
 """Wheels that grind one after the other, each where those before it do not get to."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from ..base.kinds import Array, Context, Json
 from ..engine import InputError, core
 from . import reachable
 from .raster_path import raster
 
 
-def in_turn(steps, context=None):
+def in_turn(
+    steps: Sequence[tuple[Json, Json]], context: Context = None
+) -> tuple[list[dict[str, Any] | None], dict[str, Any]]:
     """Raster paths of several wheels one after the other, each where those before it do not get to.
 
     ``steps``: list of (validated job, settings of its raster), all of the same part and faces. Returns (list of
@@ -13,7 +21,9 @@ def in_turn(steps, context=None):
     by all of them)). Raises InputError, Cancelled.
     """
     context = context or core.RunContext()
-    found, left, places = [], None, None
+    found: list[dict[str, Any] | None] = []
+    left: Array | None = None
+    places: Any = None  # of the path before
     for k, (job, settings) in enumerate(steps):
         part = context.part(k / len(steps), (k + 1) / len(steps))
         if left is not None:

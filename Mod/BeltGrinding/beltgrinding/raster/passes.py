@@ -1,11 +1,18 @@
 """From lines on a surface to a robot's poses: order, borders, gaps, approach and retract."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
-from ..base import frames
+from ..base import frames, records
+from ..base.kinds import Floats, Json
+from ..job.settings import Job
 from . import turn_limits
+from .kinds import Levels, Piece, Ramps, Room
 
 STILL = 1e-6  # mm; less is no way
 LEAST_LEAD = 0.2  # mm; a shorter way outside the border is none
@@ -15,13 +22,13 @@ UNCUT = (False, False)  # neither end of a piece lies beside what was left out
 CELL = ("base_from_work", "tcp_from_contact", "tcp_from_work", "base_from_contact")
 
 
-def cell_of(job):
+def cell_of(job: Job) -> dict[str, Any]:
     """The cell's frames of a validated job, 4 x 4 in mm by name, and 'holding'."""
-    cell = {name: frames.from_data(job["cell"].get(name)) for name in CELL}
-    return {**cell, "holding": job["cell"]["holding"]}
+    cell = {name: frames.from_data(records.plain(getattr(job.cell, name))) for name in CELL}
+    return {**cell, "holding": job.cell.holding}
 
 
-def lever(cell, points):
+def lever(cell: Json, points: Floats) -> float:
     """mm, the longest way from the tool centre point to a contact on ``points`` (n, 3)."""
     if cell["holding"] == "tool_in_hand":
         return float(np.linalg.norm(cell["tcp_from_contact"][:3, 3]))
@@ -29,7 +36,9 @@ def lever(cell, points):
     return float(np.linalg.norm(points @ frame[:3, :3].T + frame[:3, 3], axis=1).max())
 
 
-def assemble(levels, settings, cell, entry, clearing):
+def assemble(
+    levels: Levels, settings: Json, cell: Json, entry: Ramps, clearing: Room
+) -> dict[str, Any]:
     """The whole path. ``levels``: for each level line its pieces, dict(points, normals, tangents
     (n, 3), closed, and perhaps cut); ``entry``: entry.Entry; ``clearing``: clearing.Clearing. Returns dict(frames, feeds, forces, rapid, lines, zones,
     contacts, contact (n,) bool: pose of a pass, passes, cuts: how often a pass ends where it would turn too
@@ -69,7 +78,7 @@ def assemble(levels, settings, cell, entry, clearing):
     return joined
 
 
-def tcp_feeds(path, most):
+def tcp_feeds(path: Json, most: float) -> Floats:
     """mm/s of the tool centre point (n,) with which the contact has ``path["feeds"]`` over the work;
     at most ``most``. A controller that is told the feed of the contact itself (a KUKA with the tool
     outside, $IPO_MODE=#TCP) takes those.
@@ -85,27 +94,29 @@ def tcp_feeds(path, most):
     return np.minimum(feeds, most)
 
 
-def _strokes(pieces, backwards, end, settings):
+def _strokes(
+    pieces: Sequence[Piece], backwards: bool, end: Floats | None, settings: Json
+) -> tuple[list[Piece], int]:
     """(the pieces of a level in the order of travel, neighbours across short gaps joined, borders extended
     or kept clear of, what is too short left out; how often a piece ends at a limit of its turn).
     """
     left = [_turned(piece) if backwards else dict(piece) for piece in pieces]
     if end is not None:
         left = [_begun_near(piece, end) if piece["closed"] else piece for piece in left]
-    ordered = []
+    ordered: list[Piece] = []
     while left:
         # The first stroke begins where nothing of the level lies before it; then the nearest.
         k = _first(left) if not ordered else _nearest(left, ordered[-1]["points"][-1])
         ordered.append(left.pop(k))
-    joined = []
-    for piece in ordered:
-        if joined and _joins(joined[-1], piece, settings):
-            joined[-1] = _joined(joined[-1], piece)
+    joined: list[Piece] = []
+    for one in ordered:
+        if joined and _joins(joined[-1], one, settings):
+            joined[-1] = _joined(joined[-1], one)
         else:
-            joined.append(piece)
+            joined.append(one)
     result, cuts = [], 0
-    for piece in joined:
-        piece = piece if piece["closed"] else _run_out(piece, settings["run_out_mm"])
+    for whole in joined:
+        piece = whole if whole["closed"] else _run_out(whole, settings["run_out_mm"])
         if piece is None:
             continue
         sense = piece.get("sense", 1.0)
@@ -117,13 +128,13 @@ def _strokes(pieces, backwards, end, settings):
     return result, cuts
 
 
-def _turned(piece):
+def _turned(piece: Piece) -> Piece:
     """The piece travelled backwards; ``sense`` keeps the belt's travel as it was."""
     reversed_ = {name: piece[name][::-1] for name in ("points", "normals", "tangents")}
     return {**piece, **reversed_, "sense": -1.0, "cut": piece.get("cut", UNCUT)[::-1]}
 
 
-def _begun_near(piece, place):
+def _begun_near(piece: Piece, place: Floats) -> Piece:
     """A closed piece that begins at its point nearest to ``place``."""
     k = int(np.argmin(np.linalg.norm(piece["points"][:-1] - place, axis=1)))
     turned = {
@@ -133,7 +144,7 @@ def _begun_near(piece, place):
     return {**piece, **turned}
 
 
-def _first(pieces):
+def _first(pieces: Sequence[Piece]) -> int:
     """The piece with the least of the others behind its beginning."""
     if len(pieces) == 1:
         return 0
@@ -145,18 +156,18 @@ def _first(pieces):
     return int(np.argmax(gaps.min(axis=1)))
 
 
-def _nearest(pieces, place):
+def _nearest(pieces: Sequence[Piece], place: Floats) -> int:
     return int(np.argmin([np.linalg.norm(p["points"][0] - place) for p in pieces]))
 
 
-def _joins(before, piece, settings):
+def _joins(before: Piece, piece: Piece, settings: Json) -> bool:
     """Whether the pass goes on across the gap: it is short, and the way over it leads on as both ends do."""
     if before["closed"] or piece["closed"]:
         return False
     if before.get("cut", UNCUT)[1] or piece.get("cut", UNCUT)[0]:
         return False  # what lies between was left out
     over = piece["points"][0] - before["points"][-1]
-    gap = np.linalg.norm(over)
+    gap = float(np.linalg.norm(over))
     most = settings["edge_turn_deg"]
     if gap > settings["bridge_mm"] or _degrees(before["normals"][-1], piece["normals"][0]) > most:
         return False
@@ -167,23 +178,23 @@ def _joins(before, piece, settings):
     return gap <= STILL or max(_degrees(leaves, over / gap), _degrees(over / gap, arrives)) <= most
 
 
-def _degrees(a, b):
+def _degrees(a: Floats, b: Floats) -> float:
     """Between unit vectors."""
     return math.degrees(math.acos(np.clip(a @ b, -1.0, 1.0)))
 
 
-def _joined(before, piece):
+def _joined(before: Piece, piece: Piece) -> Piece:
     names = ("points", "normals", "tangents")
     joined = {name: np.vstack([before[name], piece[name]]) for name in names}
     return {**before, **joined, "cut": (before.get("cut", UNCUT)[0], piece.get("cut", UNCUT)[1])}
 
 
-def length(points):
+def length(points: Floats) -> float:
     """mm along points (n, 3)."""
     return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
 
 
-def _run_out(piece, distance):
+def _run_out(piece: Piece, distance: float) -> Piece | None:
     """Straight on beyond both ends, but where something is left out; for a negative distance, cut back. None if
     nothing is left."""
     p, n, t = piece["points"], piece["normals"], piece["tangents"]
@@ -207,7 +218,7 @@ def _run_out(piece, distance):
     return {**piece, "points": p, "normals": n, "tangents": t}
 
 
-def contact_frames(points, normals, tangents, angle=0.0):
+def contact_frames(points: Floats, normals: Floats, tangents: Floats, angle: float = 0.0) -> Floats:
     """work_from_contact (n, 4, 4): z against the outward normal, x the belt's travel, turned by
     ``angle`` (rad) about z from the tangent.
     """
@@ -223,7 +234,7 @@ def contact_frames(points, normals, tangents, angle=0.0):
     return result
 
 
-def _lead_in(strokes, settings, entry, clearing):
+def _lead_in(strokes: list[Piece], settings: Json, entry: Ramps, clearing: Room) -> int:
     """Runs the strokes on beyond their ends, where there is room; rings overlap. How many ends have none."""
     for stroke in strokes:
         stroke["leads"] = [0.0, 0.0]
@@ -235,16 +246,14 @@ def _lead_in(strokes, settings, entry, clearing):
     if not ends:
         return 0
     angle = math.radians(settings["belt_angle_deg"])
-    places, outwards, turned = [], [], []
+    rows = []
     for k, at in ends:
         one = strokes[k]
         frame = contact_frames(
             one["points"][[at]], one["normals"][[at]], one["tangents"][[at]], angle
         )
-        places.append(one["points"][at])
-        outwards.append(_outward(one, at))
-        turned.append(frame[0])
-    places, outwards, turned = (np.array(a) for a in (places, outwards, turned))
+        rows.append((one["points"][at], _outward(one, at), frame[0]))
+    places, outwards, turned = (np.array(a) for a in zip(*rows))
     turned[:, :3, 3] += settings["offset_mm"] * -turned[:, :3, 2]
     most = _to_neighbours(places, outwards, [strokes[k]["level"] for k, _ in ends], entry.lead)
     leads = entry.leads(turned, outwards, most, clearing)
@@ -255,7 +264,7 @@ def _lead_in(strokes, settings, entry, clearing):
     return int((leads <= 0.0).sum())
 
 
-def _outward(piece, at):
+def _outward(piece: Piece, at: int) -> Floats:
     """Unit vector in which the pass goes on beyond its first (0) or last (-1) point: the belt's way, unless a turn
     that is spread along the pass has it lag behind the way of the points."""
     tangent = (1.0 if at else -1.0) * piece["sense"] * piece["tangents"][at]
@@ -269,11 +278,11 @@ def _outward(piece, at):
     return way / length if length > STILL and way @ tangent < AHEAD * length else tangent
 
 
-def _to_neighbours(places, outwards, levels, lead):
+def _to_neighbours(places: Floats, outwards: Floats, levels: Sequence[int], lead: float) -> Floats:
     """mm, how far each end may run on: halfway over a gap, beyond which its own level line goes on."""
-    most, levels = np.full(len(places), lead), np.array(levels)
-    for level in np.unique(levels):
-        mine = np.flatnonzero(levels == level)
+    most, numbers = np.full(len(places), lead), np.array(levels)
+    for level in np.unique(numbers):
+        mine = np.flatnonzero(numbers == level)
         over = places[mine][None] - places[mine][:, None]
         gap = np.linalg.norm(over, axis=2)
         ahead = (over * outwards[mine][:, None]).sum(axis=2) > AHEAD * gap
@@ -282,7 +291,7 @@ def _to_neighbours(places, outwards, levels, lead):
     return most
 
 
-def _run_on(piece, at, shift):
+def _run_on(piece: Piece, at: int, shift: Floats) -> Piece:
     """The piece with one more point beyond its first (0) or last (-1)."""
     order = slice(None, None, 1 if at else -1)
     grown = {name: piece[name][order] for name in ("points", "normals", "tangents")}
@@ -291,7 +300,7 @@ def _run_on(piece, at, shift):
     return {**piece, **{name: a[order] for name, a in grown.items()}}
 
 
-def _overlapping(piece, length):
+def _overlapping(piece: Piece, length: float) -> Piece:
     """A ring that goes on over its beginning for ``length`` mm, at most once round."""
     s = _places(piece["points"])
     more = (s > 0.0) & (s < length)
@@ -299,12 +308,12 @@ def _overlapping(piece, length):
     return {name: np.vstack([piece[name], piece[name][more]]) for name in names}
 
 
-def _places(points):
+def _places(points: Floats) -> Floats:
     """mm along the piece (n,)."""
     return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
 
 
-def _with_ramps(piece, entry):
+def _with_ramps(piece: Piece, entry: Ramps) -> Piece:
     """The piece with poses in its ramps, between which the force changes."""
     s = _places(piece["points"])
     ramps = entry.ramps(piece["leads"], s[-1])
@@ -326,14 +335,16 @@ def _with_ramps(piece, entry):
     return {**piece, **grown}
 
 
-def _lifts(strokes, settings, clearing):
+def _lifts(strokes: list[Piece], settings: Json, clearing: Room) -> int:
     """Gives each stroke its ``lifts``: approach and clearance, mm, of both ends, as far as the wheel has room above
     them. How many ends have none: there they are as the settings have them."""
     if not strokes:
         return 0
     angle = math.radians(settings["belt_angle_deg"])
     ends = [
-        contact_frames(*(one[name][[0, -1]] for name in ("points", "normals", "tangents")), angle)
+        contact_frames(
+            one["points"][[0, -1]], one["normals"][[0, -1]], one["tangents"][[0, -1]], angle
+        )
         for one in strokes
     ]
     most = max(settings["clearance_mm"], settings["approach_mm"])
@@ -349,7 +360,7 @@ def _lifts(strokes, settings, clearing):
     return int((free <= 0.0).sum())
 
 
-def between(a, b, shares):
+def between(a: Floats, b: Floats, shares: Floats) -> Floats:
     """Frames (k, 4, 4) between two (4, 4): straight, turned evenly, at ``shares`` (k,) of the way."""
     ends = frames.to_quaternions(np.stack([a[:3, :3], b[:3, :3]]))
     turns = turn_limits.slerp(ends[0], ends[1], shares)
@@ -357,7 +368,7 @@ def between(a, b, shares):
     return frames.from_quaternions(places, turns)
 
 
-def _stroke(piece, settings, entry):
+def _stroke(piece: Piece, settings: Json, entry: Ramps) -> dict[str, Any]:
     """dict(contacts, feeds, forces, rapid, contact) of one pass with its approach and retract."""
     piece = _with_ramps(piece, entry)
     points = piece["points"] + settings["offset_mm"] * piece["normals"]
@@ -398,7 +409,7 @@ def _stroke(piece, settings, entry):
     }
 
 
-def _approach(frame, away, settings):
+def _approach(frame: Floats, away: Floats, settings: Json) -> Floats:
     """Poses from the clearance to just before ``frame``; ``away``: unit vector along the surface
     from which an arc comes.
     """

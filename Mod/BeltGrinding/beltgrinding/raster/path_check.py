@@ -1,13 +1,21 @@
 """What is wrong with a raster path, before it is written: found from its poses, nothing is simulated."""
 
+from __future__ import annotations
+
 import math
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
+from ..base import records
+from ..base.kinds import Array, Context, Facts, Floats, Json
 from ..cell import reach
 from ..cell.tool_path import tool_path
 from ..engine import core
 from ..job import poses
+from ..job.settings import Job, Program
+from ..job.typed import typed
 from ..presets.robot import given
 
 PLUNGES = 0.02  # of the removal; more is told
@@ -16,7 +24,7 @@ ROUNDING = 1e-6  # rad, and of a limit
 REVERSAL = 0.0  # cosine between the ways to and from a pose
 
 
-def check(job, settings, result, context=None):
+def check(job: Job | Json, settings: Json, result: Json, context: Context = None) -> dict[str, Any]:
     """Looks at what ``raster`` gave for a validated job with validated settings.
 
     Returns dict(
@@ -32,7 +40,7 @@ def check(job, settings, result, context=None):
     reach: None without a robot, else dict(poses, reached, events: dict of counts by kind),
     problems: list of Fact). Raises InputError, Cancelled.
     """
-    context = context or core.RunContext()
+    job, context = typed(job), context or core.RunContext()
     seen = motion(result)
     within = seen["within"]
     turn, way = seen["turn"][within], seen["way"][within]
@@ -40,7 +48,7 @@ def check(job, settings, result, context=None):
     limit = math.radians(settings["max_turn_deg_per_mm"])
     fast = (turn > fastest + ROUNDING) | (per_mm > limit * (1.0 + ROUNDING) + ROUNDING)
     long = way > settings["max_distance_mm"] * (1.0 + ROUNDING)
-    found = {
+    found: dict[str, Any] = {
         "poses": len(result["frames"]),
         "passes": len(result["passes"]),
         "duration_s": float(seen["time"].sum()),
@@ -56,7 +64,7 @@ def check(job, settings, result, context=None):
     return found
 
 
-def motion(result):
+def motion(result: Json) -> dict[str, Array]:
     """Between neighbouring poses, (n - 1,) each: ``way`` of the contact over the work, mm; ``turn`` of
     the wheel over the work, rad; ``time``, s at constant feed; ``within`` bool: both are of one pass;
     ``reversals`` (n - 2,) bool: the way goes back at the pose after.
@@ -79,52 +87,54 @@ def motion(result):
     return {"way": way, "turn": turn, "time": time, "within": within, "reversals": reversals}
 
 
-def _finite(value):
+def _finite(value: float) -> float | None:
     """For JSON, which has no infinity."""
     return value if math.isfinite(value) else None
 
 
-def _angles(rotations):
+def _angles(rotations: Floats) -> Floats:
     """rad from each rotation to the next: 2 asin(|A - B| / (2 sqrt 2)), Frobenius norm."""
     apart = np.linalg.norm(np.diff(rotations, axis=0), axis=(1, 2))
     return 2.0 * np.arcsin(np.minimum(apart / (2.0 * math.sqrt(2.0)), 1.0))
 
 
-def _rates(turn, way):
+def _rates(turn: Floats, way: Floats) -> Floats:
     rates = np.where(turn > ROUNDING, np.inf, 0.0)
     moved = way > STILL
     rates[moved] = turn[moved] / way[moved]
     return rates
 
 
-def _plunge_share(job, result, seen):
-    machine = job["belt_machine"]
-    if machine["control"] != "force":
+def _plunge_share(job: Job, result: Json, seen: Json) -> float | None:
+    machine = job.belt_machine
+    if machine.control != "force":
         return None
-    forces = np.where(result["forces"] < 0, machine["force_N"], result["forces"])[1:]
+    forces = np.where(result["forces"] < 0, machine.force_N, result["forces"])[1:]
     plunging = ~seen["within"] & (result["contact"][1:] | result["contact"][:-1])
     plunging &= ~(result["contact"][1:] & result["contact"][:-1])
     plunging &= ~result["rapid"][1:]
-    near = np.minimum(1.0, machine["force_travel_mm"] / np.maximum(seen["way"], STILL))
+    near = np.minimum(1.0, machine.force_travel_mm / np.maximum(seen["way"], STILL))
     work = forces * seen["time"]
     down, along = (work * near)[plunging].sum(), work[seen["within"]].sum()
     return float(down / (down + along)) if down + along > 0 else 0.0
 
 
-def _reach(job, result, context):
-    if not given(job["robot"]):
+def _reach(job: Job, result: Json, context: Context) -> dict[str, Any] | None:
+    robot = records.plain(job.robot)
+    if not given(robot):
         return None
-    steps = job["simulation"]
-    path = tool_path({**job, "programs": [{"poses": poses.list_poses(result)}]}, 0, [])
-    found = reach.reach(path, job["robot"], steps["max_travel_mm"], steps["max_angle_deg"], context)
-    events = {}
+    steps = job.simulation
+    program = records.made(Program, {"poses": poses.list_poses(dict(result))})
+    path = tool_path(replace(job, programs=(program,)), 0, [])
+    found = reach.reach(path, robot, steps.max_travel_mm, steps.max_angle_deg, context)
+    events: dict[str, int] = {}
     for event in found["events"]:
         events[event["kind"]] = events.get(event["kind"], 0) + 1
     reached = int(np.isfinite(found["joints"]).all(axis=1).sum())
     return {"poses": len(found["joints"]), "reached": reached, "events": events}
 
 
-def _problems(found, settings, fast):
+def _problems(found: Json, settings: Json, fast: Array) -> Facts:
     """Facts: what of the figures should not be."""
     problems = []
     if found["fast_turns"]:
@@ -168,7 +178,7 @@ def _problems(found, settings, fast):
     return problems + _of_reach(found["reach"])
 
 
-def _of_reach(reached):
+def _of_reach(reached: Json | None) -> Facts:
     if reached is None:
         return []
     problems = []

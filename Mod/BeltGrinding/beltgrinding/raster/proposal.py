@@ -4,14 +4,21 @@ Rules of thumb and one balance of volumes, for a first look that is near what th
 replaces his knowledge of the machine. What is assumed is said.
 """
 
-import copy
+from __future__ import annotations
+
 import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
+from ..base.kinds import Context, Facts, Floats, Json
 from ..base.quantile import weighted_quantile
 from ..engine import InputError, core
 from ..job import machine as machines
+from ..job.settings import BeltMachine, Job, Wheel
+from ..job.typed import typed
 from ..job.workpiece import apply_stock, make_field, read_design
 from . import belt_proposal
 from .clearing import Clearing
@@ -40,7 +47,7 @@ ACROSS_WIDTH, ACROSS_SAMPLES = 20, 400_000  # samples across the contact; on the
 AXIS = math.cos(math.radians(10.0))  # a direction so near to an axis of the part is that axis
 
 
-def propose(job, context=None):
+def propose(job: Job | Json, context: Context = None) -> dict[str, Any]:
     """Settings for a validated job's design, stock, kind of belt machine and law.
 
     Returns dict(wheel_radius_mm, wheel_width_mm, rim_thickness_mm: of a wheel, contact_spacing_mm, and force_travel_mm: of
@@ -49,22 +56,26 @@ def propose(job, context=None):
     free belt or a platen is taken as it is. Raises InputError, Cancelled.
     """
     context = context or core.RunContext()
-    job, notes = copy.copy(job), []
-    shape = read_design(job["design"], context)
+    job = typed(job)
+    machine = job.belt_machine
+    notes: Facts = []
+    shape = read_design(job.design, context)
     area, field = _look(job, shape, context)
     middle, along = _principal(field)
-    machine = job["belt_machine"] = copy.deepcopy(job["belt_machine"])
     if machines.wheel_presses(machine):
         settings = _settings(along)
         extent = float(np.ptp(field.points @ along))
-        _mount(machine, *_wheel(job, shape, field, settings, area, extent, notes, context))
-        tool = {
-            "wheel_radius_mm": machine["wheel"]["radius_mm"],
-            "wheel_width_mm": machine["wheel"]["width_mm"],
-            "rim_thickness_mm": machine["compliance"]["rim_thickness_mm"],
+        wheel = _wheel(job, shape, field, settings, area, extent, notes, context)
+        machine = _mounted(machine, *wheel)
+        tool: dict[str, float] = {
+            "wheel_radius_mm": machine.wheel.radius_mm,
+            "wheel_width_mm": machine.wheel.width_mm,
+            "rim_thickness_mm": machine.compliance.rim_thickness_mm,
         }
+        job = replace(job, belt_machine=machine)
     else:
-        tool = belt_proposal.mount(machine)
+        machine, tool = belt_proposal.mounted(machine)
+        job = replace(job, belt_machine=machine)
         look = {
             "standing": _standing,
             "bends": lambda way: _bends(job, shape, area, _settings(way), context)[1:],
@@ -76,15 +87,20 @@ def propose(job, context=None):
         settings = _settings(along)
     allowance = _allowance(job, field, notes, context)
     laid = raster(job, settings, context)
-    force = machine["force_N"]
+    force = machine.force_N
     feed = _feed(job, settings, laid, allowance)
     if feed is not None and not FEEDS[0] <= feed <= FEEDS[1]:
         bound = min(max(feed, FEEDS[0]), FEEDS[1])
         force = min(max(force * bound / feed, FORCE_LEAST), FORCE_MOST)
-        force = machine["force_N"] = _round(force)
+        force = _round(force)
+        job = replace(job, belt_machine=replace(machine, force_N=force))
         laid = raster(job, settings, context)
         feed = _feed(job, settings, laid, allowance)
-        if _ground_share(laid) > 0.0 and not 0.5 * FEEDS[0] <= feed <= 2.0 * FEEDS[1]:
+        if (
+            feed is not None
+            and _ground_share(laid) > 0.0
+            and not 0.5 * FEEDS[0] <= feed <= 2.0 * FEEDS[1]
+        ):
             notes.append(
                 core.Fact(
                     "raster.proposed_feed",
@@ -113,7 +129,7 @@ def propose(job, context=None):
     }
 
 
-def _settings(direction):
+def _settings(direction: Floats) -> dict[str, Any]:
     """Validated settings of passes along a direction."""
     return validate(
         {
@@ -125,32 +141,42 @@ def _settings(direction):
     )
 
 
-def _bends(job, shape, area, settings, context):
+def _bends(
+    job: Job, shape: core.Shape, area: float, settings: Json, context: Context
+) -> tuple[Floats, Floats, Floats]:
     """Normal curvatures (n,) along and across the passes, 1/mm, positive where the faces are convex, and the areas."""
-    faces = [face - 1 for face in job["design"]["faces"] or range(1, shape.face_count + 1)]
+    faces = [face - 1 for face in job.design.faces or range(1, shape.face_count + 1)]
     parts = surfaces(job, shape, faces, math.sqrt(area / SAMPLES), settings, [], context)
-    return tuple(map(np.concatenate, zip(*(curvature_along_and_across(part) for part in parts))))
+    seen = zip(*(curvature_along_and_across(part) for part in parts))
+    along, across, areas = (np.concatenate(found) for found in seen)
+    return along, across, areas
 
 
-def _mount(machine, radius, width):
-    """Puts a cylindrical wheel, with rim and force to it, on a job's belt machine."""
-    machine["wheel"].update(radius_mm=radius, width_mm=width, crown_radius_mm=0.0, profile_mm=[])
+def _mounted(machine: BeltMachine, radius: float, width: float) -> BeltMachine:
+    """A job's belt machine with a cylindrical wheel, and with rim and force to it."""
     rim = 0.5 * round(2.0 * min(RIM_SHARE * radius, RIM_MOST))
-    machine["compliance"].update(rim_thickness_mm=rim, layers=[])
     force = min(max(FORCE_PER_WIDTH * width, FORCES[0]), FORCES[1])
-    machine["force_N"] = 5.0 * round(force / 5.0)
+    return replace(
+        machine,
+        wheel=Wheel(radius_mm=radius, width_mm=width, crown_radius_mm=0.0, profile_mm=()),
+        compliance=replace(machine.compliance, rim_thickness_mm=rim, layers=()),
+        force_N=5.0 * round(force / 5.0),
+    )
 
 
-def _look(job, shape, context):
+def _look(job: Job, shape: core.Shape, context: Context) -> tuple[float, core.HeightField]:
     """(mm2 of the faces, a coarse field of them)."""
-    faces = job["design"]["faces"] or range(1, shape.face_count + 1)
+    faces = job.design.faces or range(1, shape.face_count + 1)
     area = sum(shape.face_area(face - 1) for face in faces if face <= shape.face_count)
-    coarse = {**job, "sampling": {**job["sampling"], "spacing_mm": math.sqrt(area / SAMPLES)}}
-    coarse["design"] = {**job["design"], "faces": list(faces)}
+    coarse = replace(
+        job,
+        design=replace(job.design, faces=tuple(faces)),
+        sampling=replace(job.sampling, spacing_mm=math.sqrt(area / SAMPLES)),
+    )
     return area, make_field(coarse, shape, [], context)
 
 
-def _principal(field):
+def _principal(field: core.HeightField) -> tuple[Floats, Floats]:
     """(middle, unit direction in which the faces are longest), snapped to an axis that is near; along the
     faces, not through them.
     """
@@ -170,7 +196,16 @@ def _principal(field):
     return middle, found + 0.0
 
 
-def _wheel(job, shape, field, settings, area, extent, notes, context):
+def _wheel(
+    job: Job,
+    shape: core.Shape,
+    field: core.HeightField,
+    settings: Json,
+    area: float,
+    extent: float,
+    notes: Facts,
+    context: Context,
+) -> tuple[float, float]:
     """(radius, width), mm, of a cylindrical wheel."""
     along, across, weights = _bends(job, shape, area, settings, context)
     hollow_along, hollow_across = (
@@ -206,17 +241,24 @@ def _wheel(job, shape, field, settings, area, extent, notes, context):
     return found
 
 
-def _that_fits(job, shape, field, settings, radius, width, context):
+def _that_fits(
+    job: Job,
+    shape: core.Shape,
+    field: core.HeightField,
+    settings: Json,
+    radius: float,
+    width: float,
+    context: Context,
+) -> tuple[tuple[float, float], float]:
     """((radius, width) mm of the largest wheel, not above these, that fits the part nearly everywhere on the faces;
     share of the area where it does not): the radius comes down first. Where none fits, the best one.
     """
     frames, areas = _standing(field, settings["direction"])
     clearing = Clearing(job, shape, validate({"max_tilt_deg": 0.0}), [], context)
 
-    def unfit(radius, width):
-        machine = copy.deepcopy(job["belt_machine"])
-        _mount(machine, radius, width)
-        trial = clearing.with_wheel({**job, "belt_machine": machine})
+    def unfit(radius: float, width: float) -> float:
+        machine = _mounted(job.belt_machine, radius, width)
+        trial = clearing.with_wheel(replace(job, belt_machine=machine))
         return float(areas[~trial.fits_upright(frames)].sum() / max(areas.sum(), 1e-12))
 
     tried = {}
@@ -235,13 +277,13 @@ def _that_fits(job, shape, field, settings, radius, width, context):
     return best, tried[best]
 
 
-def _largest(tried):
+def _largest(tried: Mapping[tuple[float, float], float]) -> tuple[float, float]:
     """Of {(radius, width): share that does not fit}, the largest that is nearly as good as the best."""
     least = min(tried.values())
     return max(size for size, share in tried.items() if share <= least + AS_GOOD)
 
 
-def _standing(field, direction):
+def _standing(field: core.HeightField, direction: Floats) -> tuple[Floats, Floats]:
     """(work_from_contact (n, 4, 4) of a wheel that stands on places of the faces and travels along a direction,
     areas (n,) that each stands for)."""
     points, normals = field.points, field.normals.astype(float)
@@ -255,10 +297,10 @@ def _standing(field, direction):
     return frames, areas[sound]
 
 
-def _allowance(job, field, notes, context):
+def _allowance(job: Job, field: core.HeightField, notes: Facts, context: Context) -> float:
     """mm that is to come off on the mean, to the middle of the tolerance."""
-    lower, upper = job["inspection"]["tolerance_mm"]
-    apply_stock(field, job["stock"], [], context)
+    lower, upper = job.inspection.tolerance_mm
+    apply_stock(field, job.stock, [], context)
     weight = field.areas.astype(float)
     sound = np.isfinite(field.height) & (weight > 0)
     mean = float((field.height[sound] * weight[sound]).sum() / max(weight[sound].sum(), 1e-12))
@@ -273,7 +315,7 @@ def _allowance(job, field, notes, context):
     return wanted
 
 
-def _feed(job, settings, laid, allowance):
+def _feed(job: Job, settings: Json, laid: Json, allowance: float) -> float | None:
     """mm/s at which K V_b F over the time in contact takes the allowance off the area; None if nothing
     is to come off. K V_b times the integral of F dt is the volume removed (Hammann's law, summed). In
     contact is also the last of each approach and the first of each retract, where the force control
@@ -281,25 +323,25 @@ def _feed(job, settings, laid, allowance):
     """
     if allowance <= 0:
         return None
-    machine, law = job["belt_machine"], job["law"]
-    rate = law["coefficient_mm2_per_N"] * machine["belt_wear"] * 1000.0 * machine["belt_speed_m_s"]
-    length = _loaded(laid, settings["force_N"] or machine["force_N"])
-    plunge = min(machine["force_travel_mm"], settings["approach_mm"])
+    machine, law = job.belt_machine, job.law
+    rate = law.coefficient_mm2_per_N * machine.belt_wear * 1000.0 * machine.belt_speed_m_s
+    length = _loaded(laid, settings["force_N"] or machine.force_N)
+    plunge = min(machine.force_travel_mm, settings["approach_mm"])
     ends = 2.0 * len(laid["passes"]) * plunge / settings["approach_feed_mm_s"]
     if settings["entry"] != "direct":
         ends *= settings["touch_force_share"]
-    time = allowance * _ground_share(laid) * laid["area_mm2"] / (rate * machine["force_N"]) - ends
+    time = allowance * _ground_share(laid) * laid["area_mm2"] / (rate * machine.force_N) - ends
     return length / time if time > 0 else math.inf
 
 
-def _ground_share(laid):
+def _ground_share(laid: Json) -> float:
     """Of the area, what the passes touch."""
     places = laid["places"]
     ground = places["state"] == GROUND
     return float(places["areas"][ground].sum() / places["areas"].sum())
 
 
-def _loaded(laid, force):
+def _loaded(laid: Json, force: float) -> float:
     """mm of the passes under their full force; where that grows and falls, by its share of it."""
     way = np.linalg.norm(np.diff(laid["contacts"][:, :3, 3], axis=0), axis=1)
     share = np.where(laid["forces"] < 0.0, 1.0, laid["forces"] / force)[1:]
@@ -307,7 +349,7 @@ def _loaded(laid, force):
     return float((way * share)[on].sum())
 
 
-def _spacing(area, contact_width, notes):
+def _spacing(area: float, contact_width: float, notes: Facts) -> tuple[float, int]:
     """(mm, samples): so many across the contact, if the part is not too large for that."""
     wanted = contact_width / ACROSS_WIDTH
     most = math.sqrt(area / ACROSS_SAMPLES)
@@ -327,6 +369,6 @@ def _spacing(area, contact_width, notes):
     return spacing, int(area / spacing**2)
 
 
-def _round(value):
+def _round(value: float) -> float:
     """To two digits, so that the user reads what is a choice."""
     return float(f"{value:.2g}")

@@ -3,22 +3,33 @@
 The settings are Resources/schema/raster.schema.json; every default stands there and nowhere else.
 """
 
+from __future__ import annotations
+
 import math
+from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..base import schemas
 from ..base.files import in_file
+from ..base.kinds import Context, Facts, Floats, Json
 from ..engine import InputError, core
 from ..job import engine_input, load as jobs, machine as machines, spacing as sampling
+from ..job.settings import Job
+from ..job.typed import typed
 from ..job.workpiece import read_design
 from ..programs.program import Motion, Program
 from . import around, direction, filling, footprint, passes, path_check, reachable, region
 from .clearing import Clearing
 from .entry import Entry
 from .footprint import belt_extents, contact_width, plane_extents
+from .kinds import Extents, Levels, Piece
 from .sheets import surfaces
+
+if TYPE_CHECKING:
+    from ..job.engine_input import EngineInput
 
 SAMPLES = 40_000  # on the faces, about: fine enough for passes, and 0.1 s
 LEAST_SAMPLES = 400
@@ -32,17 +43,17 @@ CLOSED = 0.5  # of the length of rings; less is told
 UNCOVERED = 0.01  # of the area; more is warned of
 
 
-def schema():
+def schema() -> dict[str, Any]:
     """The JSON Schema of the settings, as a dict."""
     return schemas.schema("raster")
 
 
-def validate(settings):
+def validate(settings: Json) -> dict[str, Any]:
     """A copy of ``settings`` with all defaults filled in. Raises InputError naming the key."""
     return schemas.checked(settings, schema(), "raster")
 
 
-def load_job(path):
+def load_job(path: Path | str) -> dict[str, Any]:
     """A validated job from a file that need not have a program yet. Raises InputError."""
     path = Path(path)
     data = schemas.read_json(path)
@@ -54,7 +65,7 @@ def load_job(path):
         raise in_file(error, path) from None
 
 
-def raster(job, settings, context=None):
+def raster(job: Job | Json, settings: Json, context: Context = None) -> dict[str, Any]:
     """Lays passes on faces of a validated job's design.
 
     Returns dict(frames (n, 4, 4) base_from_tcp mm, feeds (n,) mm/s, forces (n,) N, -1: the job's,
@@ -67,27 +78,28 @@ def raster(job, settings, context=None):
     ``reachable.look``), reachable (as ``reachable.told``), check (as ``path_check.check``), warnings). Raises
     InputError, Cancelled.
     """
-    settings = validate(settings)
+    read, settings = typed(job), validate(settings)
     context = context or core.RunContext()
-    shape = read_design(job["design"], context)
-    chosen = settings["faces"] or job["design"]["faces"] or range(1, shape.face_count + 1)
+    shape = read_design(read.design, context)
+    chosen = settings["faces"] or read.design.faces or range(1, shape.face_count + 1)
     faces = _checked_faces(chosen, shape)
+    given = engine_input.of(read)
 
-    def lay(settings, context):
-        return _laid(job, shape, faces, settings, [], context, False)[0]
+    def lay(settings: Json, context: Context) -> dict[str, Any]:
+        return _laid(read, given, shape, faces, settings, [], context, False)[0]
 
-    tried = []
+    tried: list[dict[str, Any]] = []
     if settings["along"] == "auto":
-        way, tried = direction.best(job, shape, faces, settings, lay, context)
+        way, tried = direction.best(read, given, shape, faces, settings, lay, context)
         settings = {**settings, **way}
-    warnings = []
-    result, levels, clearing = _laid(job, shape, faces, settings, warnings, context)
+    warnings: Facts = []
+    result, levels, clearing = _laid(read, given, shape, faces, settings, warnings, context)
     _tell_ends(result, settings, warnings)
     _tell_ways(clearing, result, warnings)
     result["fit"] = _fit(clearing, settings, result, warnings)
-    result["places"] = _places(job, shape, faces, settings, result, levels, clearing, context)
+    result["places"] = _places(read, shape, faces, settings, result, levels, clearing, context)
     result["reachable"] = reachable.told(result["places"], clearing.tool, settings, warnings)
-    result["check"] = path_check.check(job, settings, result, context)
+    result["check"] = path_check.check(read, settings, result, context)
     warnings += result["check"]["problems"]
     _repeat(result, settings["repeats"], clearing, warnings)
     result.update(along=settings["along"], direction=settings["direction"], tried=tried)
@@ -95,7 +107,7 @@ def raster(job, settings, context=None):
     return result
 
 
-def _repeat(result, count, clearing, warnings):
+def _repeat(result: dict[str, Any], count: int, clearing: Clearing, warnings: Facts) -> None:
     """Has all passes of a path run through ``count`` times, from the end back to the beginning as from pass to pass."""
     if count == 1:
         return
@@ -128,7 +140,16 @@ def _repeat(result, count, clearing, warnings):
     ]
 
 
-def _laid(job, shape, faces, settings, warnings, context, fill=True):
+def _laid(
+    job: Job,
+    given: EngineInput,
+    shape: core.Shape,
+    faces: Sequence[int],
+    settings: Json,
+    warnings: Facts,
+    context: Context,
+    fill: bool = True,
+) -> tuple[dict[str, Any], Levels, Clearing]:
     """(the path on faces (from 0) of a core.Shape, along a way that is given; its level lines; the Clearing).
     ``fill``: with passes besides, where the even ones miss what the wheel gets to."""
     area = sum(shape.face_area(face) for face in faces)
@@ -139,17 +160,17 @@ def _laid(job, shape, faces, settings, warnings, context, fill=True):
     lever = passes.lever(cell, np.vstack([s["points"] for s in sheets]))
     step_over, seen = settings["step_over_mm"], {"width_mm": None}
     belt, advance = None, 0.0
-    if not machines.wheel_presses(job["belt_machine"]):
-        belt = belt_extents(job, settings, sheets, warnings)
+    if not machines.wheel_presses(job.belt_machine):
+        belt = belt_extents(job, given, settings, sheets, warnings)
         seen, advance = {"width_mm": None, "gap_mm": belt["gap_mm"]}, belt["advance_mm"]
     if step_over == 0:
-        plain = belt["width_mm"] if belt else contact_width(job, settings, sheets, warnings)
+        plain = belt["width_mm"] if belt else contact_width(given, settings, sheets, warnings)
         seen = {**seen, "width_mm": plain, "plain_mm": plain, "length_mm": None}
         if settings["footprint"] == "solved":
             # Where the contact is looked at, passes as the plain width wants them are near enough.
             about = settings["step_over_share"] * plain
             first = _lines(sheets, settings, about, spacing, lever, [], context)
-            along = footprint.solved(job, shape, faces, first, settings, plain, context)
+            along = footprint.solved(job, given, shape, faces, first, settings, plain, context)
             seen = {**seen, **(along or {})}
             if belt and along is None:
                 warnings.append(
@@ -159,14 +180,14 @@ def _laid(job, shape, faces, settings, warnings, context, fill=True):
                         "faces' median curvatures",
                     )
                 )
-            elif belt:
+            elif belt and along is not None:
                 _tell_beyond(along["beyond"], warnings)
         step_over = settings["step_over_share"] * seen["width_mm"]
     finer = _finer(area, step_over)
     if not settings["sampling_mm"] and spacing > finer:
         spacing = finer
         sheets = surfaces(job, shape, faces, spacing, settings, [], context)
-    levels = _lines(sheets, settings, step_over, spacing, lever, warnings, context)
+    levels: Levels = _lines(sheets, settings, step_over, spacing, lever, warnings, context)
     if settings["along"] == "rings" and settings["order"] != "helix":
         _tell_open_rings(levels, warnings)
     wanted = _wanted(settings, seen["width_mm"] or step_over)
@@ -178,12 +199,14 @@ def _laid(job, shape, faces, settings, warnings, context, fill=True):
                 "raster.no_pass_in_region",
                 "no pass comes near the region; lower step_over_mm, or enlarge region_mm",
             )
-    length, usual = seen.get("length_mm"), (None, None)
+    length = seen.get("length_mm")
+    usual: tuple[float, float] | tuple[None, None] = None, None
     if belt:
         usual = belt["length_mm"], belt["width_mm"]
     elif not length or seen["width_mm"] is None:
-        usual = plane_extents(job, settings)
+        usual = plane_extents(job, given, settings)
     length = length or usual[0]
+    assert length is not None
     clearing = Clearing(job, shape, settings, warnings, context, advance)
     entry = Entry(job, shape, faces, settings, context, length, clearing.tool)
     cleared = clearing.cleared(levels)
@@ -210,7 +233,7 @@ def _laid(job, shape, faces, settings, warnings, context, fill=True):
     )
     if fill and not no_room and settings["where_it_collides"] != "warn" and _overlap(result):
 
-        def levels_of(step_over):
+        def levels_of(step_over: float) -> Levels:
             found = _lines(sheets, settings, step_over, spacing, lever, [], context)
             return found if wanted is None else region.restricted(found, *wanted)
 
@@ -218,11 +241,11 @@ def _laid(job, shape, faces, settings, warnings, context, fill=True):
         extents = _extents(settings, result)
         added = filling.more(levels_of, places, clearing, settings, step_over, extents)
         if added:
-            result.update(passes.assemble(cleared + added, settings, cell, entry, clearing))
+            result.update(passes.assemble([*cleared, *added], settings, cell, entry, clearing))
     return result, levels, clearing
 
 
-def _tell_beyond(share, warnings):
+def _tell_beyond(share: float, warnings: Facts) -> None:
     if share > 0.0:
         warnings.append(
             core.Fact(
@@ -234,7 +257,7 @@ def _tell_beyond(share, warnings):
         )
 
 
-def _tell_open_rings(levels, warnings):
+def _tell_open_rings(levels: Levels, warnings: Facts) -> None:
     pieces = [piece for level in levels for piece in level]
     closed = sum(passes.length(piece["points"]) for piece in pieces if piece["closed"])
     share = closed / max(sum(passes.length(piece["points"]) for piece in pieces), 1e-9)
@@ -249,19 +272,28 @@ def _tell_open_rings(levels, warnings):
         )
 
 
-def _overlap(result):
+def _overlap(result: dict[str, Any]) -> bool:
     """Whether the passes are near enough for their contacts to overlap; else stripes between them are wanted."""
     return result["contact_width_mm"] is not None
 
 
-def _wanted(settings, width):
+def _wanted(settings: Json, width: float) -> tuple[Floats, float] | None:
     """(points (n, 3), mm round them) of the region, None: everywhere; ``width``: of the contact, mm."""
     if not settings["region_points"]:
         return None
     return np.array(settings["region_points"], dtype=float), region.margin_of(settings, width)
 
 
-def _places(job, shape, faces, settings, result, levels, clearing, context):
+def _places(
+    job: Job,
+    shape: core.Shape,
+    faces: Sequence[int],
+    settings: Json,
+    result: dict[str, Any],
+    levels: Levels,
+    clearing: Clearing,
+    context: Context,
+) -> dict[str, Any]:
     """What ``reachable.look`` finds of a path."""
     contacts = [result["contacts"][p["first"] : p["last"] + 1] for p in result["passes"]]
     if result["no_room"]:  # none that may be ground
@@ -279,7 +311,7 @@ def _places(job, shape, faces, settings, result, levels, clearing, context):
     )
 
 
-def _extents(settings, result):
+def _extents(settings: Json, result: dict[str, Any]) -> Extents:
     """(mm along, mm across the belt's travel, mm of the gap at its edge or None) of the contact."""
     along = result["contact_length_mm"]
     across = result["contact_width_mm"] or result["usual_width_mm"]
@@ -288,7 +320,7 @@ def _extents(settings, result):
     return (along, across, gap) if turn < math.sqrt(0.5) else (across, along, gap)
 
 
-def _tell_ends(result, settings, warnings):
+def _tell_ends(result: dict[str, Any], settings: Json, warnings: Facts) -> None:
     if result["cuts"]:
         warnings.append(
             core.Fact(
@@ -301,7 +333,14 @@ def _tell_ends(result, settings, warnings):
         )
 
 
-def _check_size(job, shape, faces, settings, warnings, context):
+def _check_size(
+    job: Job,
+    shape: core.Shape,
+    faces: Sequence[int],
+    settings: Json,
+    warnings: Facts,
+    context: Context,
+) -> None:
     """Tells of faces in another unit, probably, before anything is computed on them."""
     seen = sampling.size(job, shape, faces, context)
     warnings += sampling.unit_doubts(seen)
@@ -320,7 +359,7 @@ def _check_size(job, shape, faces, settings, warnings, context):
         )
 
 
-def _checked_faces(numbers, shape):
+def _checked_faces(numbers: Iterable[int], shape: core.Shape) -> list[int]:
     for number in numbers:
         if number > shape.face_count:
             raise InputError(
@@ -333,7 +372,7 @@ def _checked_faces(numbers, shape):
     return sorted({number - 1 for number in numbers})
 
 
-def _sampling(area, settings):
+def _sampling(area: float, settings: Json) -> float:
     """mm: as fine as poses and passes need, for not too many samples."""
     side = math.sqrt(max(area, 1e-6))
     wanted = [settings["max_distance_mm"] / POSE_SAMPLES, side / math.sqrt(LEAST_SAMPLES)]
@@ -342,12 +381,20 @@ def _sampling(area, settings):
     return max(min(*wanted, side / math.sqrt(SAMPLES)), side / math.sqrt(MOST_SAMPLES))
 
 
-def _finer(area, step_over):
+def _finer(area: float, step_over: float) -> float:
     """mm that ``step_over`` asks for, within bounds: between samples, passes are interpolated."""
     return max(step_over / STEP_SAMPLES, math.sqrt(area / MOST_SAMPLES))
 
 
-def _lines(surfaces, settings, step_over, spacing, lever, warnings, context):
+def _lines(
+    surfaces: Sequence[Json],
+    settings: Json,
+    step_over: float,
+    spacing: float,
+    lever: float,
+    warnings: Facts,
+    context: Context,
+) -> list[list[dict[str, Any]]]:
     """Pieces of passes of all surfaces: list of levels, each a list of the core's lines."""
     levels, laid = [], settings["spacing"]
     if settings["order"] == "helix":
@@ -383,14 +430,14 @@ def _lines(surfaces, settings, step_over, spacing, lever, warnings, context):
                     share=share,
                 )
             )
-        mine = {}
+        mine: dict[int, list[Piece]] = {}
         for line in found["lines"]:
             mine.setdefault(line["level"], []).append(line)
         levels += [mine[level] for level in sorted(mine)]
     return levels
 
 
-def _fit(clearing, settings, result, warnings):
+def _fit(clearing: Clearing, settings: Json, result: dict[str, Any], warnings: Facts) -> Floats:
     fit = np.zeros(len(result["frames"]))
     touching = np.flatnonzero(result["contact"])
     fit[touching] = clearing.tool_depth(result["contacts"][touching])
@@ -425,7 +472,7 @@ def _fit(clearing, settings, result, warnings):
     return fit
 
 
-def _tell_ways(clearing, result, warnings):
+def _tell_ways(clearing: Clearing, result: dict[str, Any], warnings: Facts) -> None:
     blocked = clearing.ways_blocked(result["contacts"], result["rapid"])
     if blocked or result["stuck"]:
         warnings.append(
@@ -442,7 +489,7 @@ def _tell_ways(clearing, result, warnings):
         )
 
 
-def _tell_no_room(result, clearing, warnings):
+def _tell_no_room(result: dict[str, Any], clearing: Clearing, warnings: Facts) -> None:
     """Before all other warnings."""
     if not result["passes"]:
         return
@@ -472,7 +519,7 @@ def _tell_no_room(result, clearing, warnings):
     )
 
 
-def program(result, tool="", base=""):
+def program(result: dict[str, Any], tool: str = "", base: str = "") -> Program:
     """The path as a ``programs.Program``, for ``programs.write_program``. ``tool``, ``base``: what its
     frames are, in words.
     """
@@ -485,7 +532,7 @@ def program(result, tool="", base=""):
     return made
 
 
-def summary(result):
+def summary(result: dict[str, Any]) -> dict[str, Any]:
     """The figures of a raster, as the command line prints them."""
     ground = [p["length_mm"] for p in result["passes"]]
     return {

@@ -1,11 +1,21 @@
 """What of the faces a raster path grinds, and why the rest stays: place by place."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..base.kinds import Array, Context, Facts, Floats, Json
 from ..engine import core
 from . import passes
+from .kinds import Extents, Levels
+
+if TYPE_CHECKING:
+    from .clearing import Clearing
+    from .tool import Tool
 
 PLACES = 4_000  # on the faces, about
 OTHER_WAYS = 400  # of those that the wheel does not get to, that are looked at with the belt in other directions
@@ -19,7 +29,7 @@ LEAST_CONTACT = 0.5  # mm
 GROUND, NO_ROOM, NO_PASS, NOT_WANTED = 0, 1, 2, 3  # states of a place
 
 
-def in_any_direction(clearing, points, normals):
+def in_any_direction(clearing: Clearing, points: Floats, normals: Floats) -> Array:
     """(n,) bool: at places with outward normals (n, 3), mm, the wheel of a clearing.Clearing fits, leaned if it must
     be, with its belt in one of ``ANGLES`` directions about the normal at least."""
     other = np.eye(3)[np.argmin(abs(normals), axis=1)]
@@ -34,7 +44,17 @@ def in_any_direction(clearing, points, normals):
     return fits
 
 
-def look(shape, faces, levels, contacts, clearing, settings, extents, wanted=None, context=None):
+def look(
+    shape: core.Shape,
+    faces: Sequence[int],
+    levels: Levels,
+    contacts: Sequence[Floats],
+    clearing: Clearing,
+    settings: Json,
+    extents: Extents,
+    wanted: tuple[Floats, float] | None = None,
+    context: Context = None,
+) -> dict[str, Any]:
     """What a path grinds of faces (from 0) of a core.Shape.
 
     ``levels``: the passes as they would lie if the wheel fitted everywhere, lists of dict(points, tangents (n, 3));
@@ -88,7 +108,9 @@ def look(shape, faces, levels, contacts, clearing, settings, extents, wanted=Non
     }
 
 
-def _another_way(clearing, points, normals, areas, fits):
+def _another_way(
+    clearing: Clearing, points: Floats, normals: Floats, areas: Floats, fits: Array
+) -> float:
     left = np.flatnonzero(~fits & (areas > 0))
     if not len(left) or clearing.blind:
         return _share(fits, areas)
@@ -97,7 +119,7 @@ def _another_way(clearing, points, normals, areas, fits):
     return _share(fits, areas) + gained * (1.0 - _share(fits, areas))
 
 
-def _along(ways, normals):
+def _along(ways: Floats, normals: Floats) -> Floats:
     """Unit tangents next to ``ways``; any where these stand on the surface."""
     found = ways - (ways * normals).sum(axis=1)[:, None] * normals
     steep = np.linalg.norm(found, axis=1) < 1e-3
@@ -106,7 +128,7 @@ def _along(ways, normals):
     return found / np.linalg.norm(found, axis=1)[:, None]
 
 
-def nearest(points, others):
+def nearest(points: Floats, others: Floats) -> Array:
     """(n,) the number of the nearest of ``others`` (m, 3) to each point (n, 3)."""
     middle = others.mean(axis=0)
     points, others = points - middle, others - middle
@@ -118,12 +140,12 @@ def nearest(points, others):
     return found
 
 
-def nearest_distance(points, others):
+def nearest_distance(points: Floats, others: Floats) -> Floats:
     """mm (n,) from each point (n, 3) to the nearest of ``others`` (m, 3)."""
     return np.linalg.norm(points - others[nearest(points, others)], axis=1)
 
 
-def touched(points, contacts, tool, extents):
+def touched(points: Floats, contacts: Sequence[Floats], tool: Tool, extents: Extents) -> Array:
     """(n,) bool: over which the wheel or the belt (of ``tool.of``) stands, at one of its poses or between two, no higher than
     over the edge of a contact of these extents (as ``look`` has them)."""
     length = max(extents[0], LEAST_CONTACT)
@@ -142,7 +164,7 @@ def touched(points, contacts, tool, extents):
     return found
 
 
-def _between(frames, spacing):
+def _between(frames: Floats, spacing: float) -> Floats:
     """Frames (k, 4, 4), no farther apart than ``spacing``; those between are means, nearly rotations."""
     count = np.ceil(np.linalg.norm(np.diff(frames[:, :3, 3], axis=0), axis=1) / spacing)
     count = np.maximum(count, 1).astype(int)
@@ -152,7 +174,7 @@ def _between(frames, spacing):
     return np.concatenate([found, frames[-1:]])
 
 
-def told(seen, tool, settings, warnings):
+def told(seen: Json, tool: Tool, settings: Json, warnings: Facts) -> dict[str, Any]:
     """Adds what ``look`` found to the list of warnings. Returns dict(share, faces: {face from 1: share} of the faces
     that the wheel does not get to all of, left_out, no_pass: of the area)."""
     areas = seen["counted"]
@@ -225,16 +247,16 @@ def told(seen, tool, settings, warnings):
     }
 
 
-def _by_face(fits, owner, areas):
+def _by_face(fits: Array, owner: Array, areas: Floats) -> dict[int, float]:
     return {
         int(face) + 1: _share(fits[owner == face], areas[owner == face])
         for face in np.unique(owner[areas > 0])
     }
 
 
-def _lacking(shares):
+def _lacking(shares: Mapping[int, float]) -> dict[int, float]:
     return {face: value for face, value in shares.items() if value < WHOLE}
 
 
-def _share(fits, areas):
+def _share(fits: Array, areas: Floats) -> float:
     return float(areas[fits].sum() / max(areas.sum(), 1e-300))

@@ -1,15 +1,23 @@
 """Passes on a part of the faces only: near points that are given, from a result or from what another wheel left."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 
+from ..base.kinds import Array, Floats, Json
 from ..base.quantile import weighted_quantile
 from ..engine import InputError, core
 from ..inspection import verdict
+from ..job.settings import Job
+from ..job.typed import typed
 from ..simulation.result import Result
 from . import reachable
 from .clearing import finer, part_of, runs
+from .kinds import Levels, Piece
 
 MOST_POINTS = 5_000  # of a region that is made of samples
 FINE = 0.25  # of the margin: from place to place that is looked at along a pass
@@ -18,7 +26,9 @@ NEAREST = 0.99  # of a region's points must lie by the faces, or it is another p
 APART = 2.0  # of the margin: farther than that off the faces is elsewhere
 
 
-def of_result(folder, above_mm=None, clusters=()):
+def of_result(
+    folder: Path | str, above_mm: float | None = None, clusters: Sequence[int] = ()
+) -> tuple[Floats, float]:
     """(points (n, 3) mm, margin mm that their spacing asks for) where a result has too much left.
 
     ``folder``: of a run; ``above_mm``: more is too much, None: above its tolerance; ``clusters``: numbers, from 1, of
@@ -29,11 +39,17 @@ def of_result(folder, above_mm=None, clusters=()):
     return of_field(field, job, above_mm, clusters, str(folder))
 
 
-def of_field(field, job, above_mm=None, clusters=(), where=""):
+def of_field(
+    field: core.HeightField,
+    job: Job | Json,
+    above_mm: float | None = None,
+    clusters: Sequence[int] = (),
+    where: str = "",
+) -> tuple[Floats, float]:
     """The same of a ground core.HeightField of a job; ``where``: what it is called in errors."""
-    height = field.height.astype(float)
+    job, height = typed(job), field.height.astype(float)
     if clusters:
-        chosen = []
+        mines = []
         for number in clusters:
             mine = verdict.cluster_samples(job, field, number)
             if not len(mine):
@@ -43,17 +59,17 @@ def of_field(field, job, above_mm=None, clusters=(), where=""):
                     where=where,
                     number=number,
                 )
-            if np.mean(height[mine]) < np.mean(job["inspection"]["tolerance_mm"]):
+            if np.mean(height[mine]) < np.mean(job.inspection.tolerance_mm):
                 raise InputError(
                     "raster.cluster_below",
                     "{where}: cluster {number} is cut too deep: there is nothing to come off",
                     where=where,
                     number=number,
                 )
-            chosen.append(mine)
-        chosen = np.concatenate(chosen)
+            mines.append(mine)
+        chosen: Array = np.concatenate(mines)
     else:
-        limit = job["inspection"]["tolerance_mm"][1] if above_mm is None else above_mm
+        limit = job.inspection.tolerance_mm[1] if above_mm is None else above_mm
         chosen = np.flatnonzero(np.isfinite(height) & (height > limit) & (field.areas > 0))
         if not len(chosen):
             raise InputError(
@@ -67,12 +83,12 @@ def of_field(field, job, above_mm=None, clusters=(), where=""):
     return field.points[some], 1.5 * math.sqrt(area / len(some))
 
 
-def margin_of(settings, width):
+def margin_of(settings: Json, width: float) -> float:
     """mm round a region's points; ``width``: of the contact, mm."""
     return settings["region_mm"] or 0.5 * width
 
 
-def check(points, faces, margin):
+def check(points: Floats, faces: Floats, margin: float) -> None:
     """Raises InputError if a region's points do not lie on faces that have ``faces`` (m, 3) points, mm."""
     off = reachable.nearest_distance(points, faces)
     far = weighted_quantile(off, np.ones(len(off)), NEAREST)
@@ -88,7 +104,7 @@ def check(points, faces, margin):
         )
 
 
-def restricted(levels, points, margin):
+def restricted(levels: Levels, points: Floats, margin: float) -> Levels:
     """The pieces of passes by level, as ``clearing.cleared`` takes them, cut to where they are no farther than
     ``margin`` mm from one of ``points`` (n, 3). Shorter gaps than that are kept."""
     result, step = [], max(FINE * margin, FINEST)
@@ -109,7 +125,7 @@ def restricted(levels, points, margin):
                 own[[0, -1]] = True
                 if own.sum() < 2:
                     continue
-                part = {**piece, **part_of(fine, run[own]), "closed": False}
+                part: Piece = {**piece, **part_of(fine, run[own]), "closed": False}
                 part.pop("own", None)
                 part["cut"] = (run[0] > 0, run[-1] < len(near) - 1)
                 kept.append(part)

@@ -1,15 +1,30 @@
 """What passes are laid on: the faces of a job's design as sampled sheets, each with the scalar whose level lines
 are the passes. No FreeCAD in here."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 
+from ..base.kinds import Context, Facts, Floats, Json
 from ..engine import InputError, core
+from ..job.settings import Job
 from . import around
 
 PARALLEL = 0.05  # sine of an angle below which two directions count as one
 
 
-def surfaces(job, shape, faces, spacing, settings, warnings, context):
+def surfaces(
+    job: Job,
+    shape: core.Shape,
+    faces: Sequence[int],
+    spacing: float,
+    settings: Json,
+    warnings: Facts,
+    context: Context,
+) -> list[dict[str, Any]]:
     """What passes are laid on: each face by itself for u and v, all together for a direction. List
     of dict(points, normals (n, 3), triangles (m, 3), scalars (m, 3), period, name).
     """
@@ -54,7 +69,7 @@ def surfaces(job, shape, faces, spacing, settings, warnings, context):
     return result
 
 
-def planes_across(direction, points, normals, areas):
+def planes_across(direction: Floats, points: Floats, normals: Floats, areas: Floats) -> Floats:
     """Unit vector across the passes: the normal of the planes that cut them."""
     along = np.asarray(direction, dtype=float)
     length = np.linalg.norm(along)
@@ -83,7 +98,7 @@ def planes_across(direction, points, normals, areas):
     return across / np.linalg.norm(across)
 
 
-def curvature_along_and_across(surface):
+def curvature_along_and_across(surface: Json) -> tuple[Floats, Floats, Floats]:
     """Normal curvatures of the triangles along and across the passes, 1/mm, positive where the
     surface is convex, and the triangles' areas: from how the normals change along the edges.
     """

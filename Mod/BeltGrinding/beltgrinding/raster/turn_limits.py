@@ -1,10 +1,15 @@
 """Passes that a robot can follow: the wheel turns no faster than asked, and never goes back in contact."""
 
+from __future__ import annotations
+
 import math
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from ..base import frames
+from ..base.kinds import Floats, Json
+from .kinds import Piece
 
 STILL = 1e-6  # mm; less is no way
 NO_TURN = 1e-7  # rad
@@ -13,8 +18,10 @@ GROWTH = 1.25  # of the stretch over which a turn is spread, from try to try
 MOST_TRIES = 40
 BACK = 0.0  # cosine between the way to a point and the way from it; below, it goes back
 
+Way: TypeAlias = "tuple[Floats, Floats]"  # points and quaternions, or mm and rad
 
-def limited(piece, settings):
+
+def limited(piece: Piece, settings: Json) -> list[Piece]:
     """The pieces (list of dict as given) that are left of one: a turn of the wheel that is faster than
     max_turn_deg_per_mm is spread along the pass, if it is no larger than edge_turn_deg on the way that it
     needs; else the pass ends there, as it does where its way goes back. Poses are put between those that
@@ -26,7 +33,8 @@ def limited(piece, settings):
     points, turns = _plain(piece["points"], _quaternions(piece["normals"], piece["tangents"]))
     if len(points) < 2:
         return []
-    cuts, start, done = _backs(points), 0, []
+    cuts, start = _backs(points), 0
+    done: list[Way] = []
     for cut in [*cuts, len(points) - 1]:
         done += _spread(points[start : cut + 1], turns[start : cut + 1], rate, largest)
         start = cut
@@ -36,7 +44,8 @@ def limited(piece, settings):
     if ring and len(done) > 1 and not _apart(done[-1], done[0], rate):
         # The beginning of a ring is no end.
         last = done.pop()
-        done[0] = tuple(np.concatenate([a[:-1], b]) for a, b in zip(last, done[0]))
+        joined = [np.concatenate([a[:-1], b]) for a, b in zip(last, done[0])]
+        done[0] = joined[0], joined[1]
     for points, turns in done:
         points, turns = _filled(points, turns, settings)
         x, y, z, w = turns[:, 1], turns[:, 2], turns[:, 3], turns[:, 0]
@@ -47,7 +56,7 @@ def limited(piece, settings):
     return result
 
 
-def _quaternions(normals, tangents):
+def _quaternions(normals: Floats, tangents: Floats) -> Floats:
     """w, x, y, z (n, 4) of frames with x along the tangent, z against the normal; neighbours on one side."""
     z = -normals / np.linalg.norm(normals, axis=1)[:, None]
     x = tangents - (tangents * z).sum(axis=1)[:, None] * z
@@ -56,19 +65,19 @@ def _quaternions(normals, tangents):
     return _one_side(found)
 
 
-def _one_side(turns):
+def _one_side(turns: Floats) -> Floats:
     signs = np.where((turns[1:] * turns[:-1]).sum(axis=1) < 0, -1.0, 1.0)
     return turns * np.concatenate([[1.0], np.cumprod(signs)])[:, None]
 
 
-def _plain(points, turns):
+def _plain(points: Floats, turns: Floats) -> Way:
     """Without points that are the ones before again."""
     way, turn = _steps(points, turns)
     kept = np.concatenate([[True], (way > STILL) | (turn > NO_TURN)])
     return points[kept], turns[kept]
 
 
-def _steps(points, turns):
+def _steps(points: Floats, turns: Floats) -> Way:
     """mm (n - 1,) and rad (n - 1,) from point to point."""
     apart = np.minimum(
         np.linalg.norm(np.diff(turns, axis=0), axis=1),
@@ -79,7 +88,7 @@ def _steps(points, turns):
     )
 
 
-def _backs(points):
+def _backs(points: Floats) -> list[int]:
     """Indices of the points at which the way goes back."""
     steps = np.diff(points, axis=0)
     moves = np.flatnonzero(np.linalg.norm(steps, axis=1) > STILL)
@@ -87,14 +96,14 @@ def _backs(points):
     return moves[1:][back].tolist()
 
 
-def _seam_backs(points):
+def _seam_backs(points: Floats) -> bool:
     """Whether the way of a ring goes back where it begins."""
     steps = np.diff(points, axis=0)
     moves = steps[np.linalg.norm(steps, axis=1) > STILL]
     return len(moves) < 2 or moves[-1] @ moves[0] < BACK
 
 
-def _seam_jumps(points, turns, rate, settings):
+def _seam_jumps(points: Floats, turns: Floats, rate: float, settings: Json) -> bool:
     """Whether the wheel would turn too fast from a ring's end to its second point: a turn that is spread, or a lean
     that changes, at one side of the seam only."""
     way, turn = _steps(np.stack([points[-1], points[1]]), np.stack([turns[-1], turns[1]]))
@@ -102,7 +111,7 @@ def _seam_jumps(points, turns, rate, settings):
     return turn[0] > limit + NO_TURN
 
 
-def slerp(a, b, shares):
+def slerp(a: Floats, b: Floats, shares: Floats) -> Floats:
     """Quaternions (n, 4) from ``a`` to ``b`` ((4,) or (n, 4)), the shorter way."""
     a, b = np.broadcast_to(a, (len(shares), 4)), np.broadcast_to(b, (len(shares), 4))
     cosine = (a * b).sum(axis=1)
@@ -117,7 +126,7 @@ def slerp(a, b, shares):
     return found / np.linalg.norm(found, axis=1)[:, None]
 
 
-def _at(points, turns, s, places):
+def _at(points: Floats, turns: Floats, s: Floats, places: Floats) -> Way:
     """(points, quaternions) at the places (k,), mm along the piece, strictly between its ends."""
     i = np.clip(np.searchsorted(s, places, side="right") - 1, 0, len(s) - 2)
     step = s[i + 1] - s[i]
@@ -126,10 +135,11 @@ def _at(points, turns, s, places):
     return between, slerp(turns[i], turns[i + 1], share)
 
 
-def _spread(points, turns, rate, largest):
+def _spread(points: Floats, turns: Floats, rate: float, largest: float) -> list[Way]:
     """[(points, quaternions)] of the pieces that are left, in which no turn is faster than ``rate``
     (rad/mm)."""
-    turns, pieces = _one_side(turns), []
+    turns = _one_side(turns)
+    pieces: list[Way] = []
     seen = 0  # before it all is well
     while len(points) > 1:
         way, turn = _steps(points, turns)
@@ -147,7 +157,9 @@ def _spread(points, turns, rate, largest):
     return pieces
 
 
-def _blended(points, turns, k, rate, largest):
+def _blended(
+    points: Floats, turns: Floats, k: int, rate: float, largest: float
+) -> tuple[Floats, Floats, int] | None:
     """The piece with its turn from point k to the next spread over a stretch round it, and the index of
     the stretch's first point; None if there is no such stretch."""
     way, turn = _steps(points, turns)
@@ -187,12 +199,12 @@ def _blended(points, turns, k, rate, largest):
     return points, turns, max(len(before) - 1, 0)
 
 
-def _apart(last, first, rate):
+def _apart(last: Way, first: Way, rate: float) -> bool:
     way, turn = _steps(np.stack([last[0][-1], first[0][0]]), np.stack([last[1][-1], first[1][0]]))
     return way[0] > 10 * STILL or turn[0] > max(rate * way[0], 10 * NO_TURN)
 
 
-def _filled(points, turns, settings):
+def _filled(points: Floats, turns: Floats, settings: Json) -> Way:
     """With poses between those that are too far apart."""
     way, turn = _steps(points, turns)
     count = np.maximum(

@@ -1,10 +1,21 @@
 """Charts of a report, as SVG: the deviation's histogram by area, time series, the colours' legend."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
+from ..base.kinds import Array, Json
 from ..engine import core
 from ..inspection.section_plot import ticks
 from .markup import element
+
+if TYPE_CHECKING:
+    from ..inspection import picture
+    from .language import Language
+    from .markup import Markup
 
 WIDTH = 720  # user units; the page scales the drawing
 INK, GRID, FRAME = "#40454d", "#e3e5e8", "#9aa0a8"
@@ -17,12 +28,12 @@ SERIES = (  # name among a result's steps, text, unit, colour
 )
 
 
-def rgb(packed):
+def rgb(packed: int) -> str:
     """CSS colour of 0xRRGGBBAA."""
     return f"#{int(packed) >> 8:06x}"
 
 
-def _svg(width, height, *children, **attributes):
+def _svg(width: float, height: float, *children: object, **attributes: object) -> Markup:
     return element(
         "svg",
         *children,
@@ -36,11 +47,13 @@ def _svg(width, height, *children, **attributes):
     )
 
 
-def _text(x, y, text, anchor="start", **attributes):
+def _text(x: float, y: float, text: str, anchor: str = "start", **attributes: object) -> Markup:
     return element("text", text, x=float(x), y=float(y), text_anchor=anchor, **attributes)
 
 
-def histogram(field, scale, words):
+def histogram(
+    field: core.HeightField, scale: tuple[float, float, float], words: Language
+) -> Markup | None:
     """The share of the inspected area by deviation, in the colours of ``scale`` (lower, upper, limit,
     mm), with the band drawn. The first and the last bar hold all that lies beyond.
     """
@@ -64,15 +77,20 @@ def histogram(field, scale, words):
     left, right, above, below, tall = 52, 12, 26, 44, 170
     wide = WIDTH - left - right
 
-    def x(value):
+    def x(value: Any) -> Any:
         return left + wide * (value - edges[0]) / (edges[-1] - edges[0])
 
-    def y(share):
+    def y(share: Any) -> Any:
         return above + tall * (1.0 - np.sqrt(share / top))
 
     drawn = [
         element(
-            "rect", x=x(lower), y=above, width=x(upper) - x(lower), height=tall, fill="#e9f0e9"
+            "rect",
+            x=x(lower),
+            y=above,
+            width=x(upper) - x(lower),
+            height=tall,
+            fill="#e9f0e9",
         ),
     ]
     for value in (v for v in (0.1, 1.0, 5.0, 10.0, 20.0, 40.0, 60.0, 80.0) if v < 1.05 * top):
@@ -81,7 +99,12 @@ def histogram(field, scale, words):
     values, decimals = ticks(edges[0], edges[-1], 9)
     for value in values:
         drawn.append(
-            _text(x(value), above + tall + 16, words.number(value, decimals, True), "middle")
+            _text(
+                x(value),
+                above + tall + 16,
+                words.number(value, decimals, True),
+                "middle",
+            )
         )
     for share, middle, a, b, colour in zip(shares, middles, edges, edges[1:], colours):
         if share > 0.0:
@@ -104,14 +127,22 @@ def histogram(field, scale, words):
         anchor, shift = ("start", 5) if side > 0 else ("end", -5)
         drawn.append(
             element(
-                "path", d=f"M{x(value):.1f} {above - 8}v{tall + 8}", stroke=INK, stroke_width=1.4
+                "path",
+                d=f"M{x(value):.1f} {above - 8}v{tall + 8}",
+                stroke=INK,
+                stroke_width=1.4,
             )
         )
         label = f"{words.number(value, 3, True)} mm"
         drawn.append(_text(x(value) + shift, above - 10, label, anchor))
     drawn.append(element("path", d=f"M{left} {above + tall}h{wide}", stroke=FRAME))
     drawn.append(
-        _text(left + wide / 2, above + tall + 36, words("deviation from the design, mm"), "middle")
+        _text(
+            left + wide / 2,
+            above + tall + 36,
+            words("deviation from the design, mm"),
+            "middle",
+        )
     )
     middle = above + tall / 2
     drawn.append(
@@ -126,19 +157,26 @@ def histogram(field, scale, words):
     return _svg(WIDTH, above + tall + below, drawn, class_="chart", aria_label=label)
 
 
-def legend(scale, words):
+def legend(scale: tuple[float, float, float], words: Language) -> Markup:
     """The colours of the deviation, with their limits in mm, and of missed rays."""
     lower, upper, limit = scale
     left, top, bar, wide = 30, 10, 20, 530
     values = np.linspace(-limit, limit, 281)
     colours = core.colour_scale(lower, upper, limit, values.tolist())
 
-    def x(value):
+    def x(value: Any) -> Any:
         return left + wide * (value + limit) / (2.0 * limit)
 
     step = wide / len(values)
     drawn = [
-        element("rect", x=left + k * step, y=top, width=step + 0.4, height=bar, fill=rgb(colour))
+        element(
+            "rect",
+            x=left + k * step,
+            y=top,
+            width=step + 0.4,
+            height=bar,
+            fill=rgb(colour),
+        )
         for k, colour in enumerate(colours)
     ]
     drawn.append(element("rect", x=left, y=top, width=wide, height=bar, fill="none", stroke=FRAME))
@@ -160,7 +198,11 @@ def legend(scale, words):
         drawn.append(_text(at, top + bar + 37, text, "middle", font_weight="bold"))
     drawn.append(
         _text(
-            0.5 * (x(lower) + x(upper)), top + bar + 37, words("good"), "middle", font_weight="bold"
+            0.5 * (x(lower) + x(upper)),
+            top + bar + 37,
+            words("good"),
+            "middle",
+            font_weight="bold",
         )
     )
     missed = rgb(0x707070FF)
@@ -170,7 +212,7 @@ def legend(scale, words):
     return _svg(WIDTH, top + bar + 44, drawn, class_="legend", aria_label=label)
 
 
-def binned(steps, count=SERIES_BINS):
+def binned(steps: Mapping[str, Array], count: int = SERIES_BINS) -> dict[str, Any]:
     """The time series of a run in at most ``count`` bins of equal time: dict of lists, ``time`` (s, the
     bins' middles) and of every name in ``SERIES`` the greatest value in the bin (0 where there is no
     step, None for values that are not finite).
@@ -190,7 +232,7 @@ def binned(steps, count=SERIES_BINS):
     return found
 
 
-def series(bins, words):
+def series(bins: Json | None, words: Language) -> Markup | None:
     """The time series of ``binned``, one chart below the other; None without any."""
     if not bins or not bins["time"]:
         return None
@@ -228,7 +270,9 @@ def series(bins, words):
     return _svg(WIDTH, base + 40, drawn, class_="chart", aria_label=label)
 
 
-def marked(view, uri, marks, alt):
+def marked(
+    view: picture.View, uri: str, marks: Sequence[tuple[int, float, float]], alt: str
+) -> Markup:
     """A picture with numbered marks. ``marks``: (number, column, row) in pixels; ``view``: its
     ``picture.View``; ``uri``: its data.
     """
@@ -245,7 +289,15 @@ def marked(view, uri, marks, alt):
         drawn.append(element("circle", cx=x, cy=y, r=size / 4.2, fill=INK, stroke="white"))
     for (number, *_), (at, up) in zip(marks, labels):
         drawn.append(
-            element("circle", cx=at, cy=up, r=0.85 * size, fill=INK, stroke="white", stroke_width=2)
+            element(
+                "circle",
+                cx=at,
+                cy=up,
+                r=0.85 * size,
+                fill=INK,
+                stroke="white",
+                stroke_width=2,
+            )
         )
         drawn.append(
             element(
@@ -262,19 +314,27 @@ def marked(view, uri, marks, alt):
     return _svg(columns, rows, drawn, class_="picture", aria_label=alt)
 
 
-def ringed(view, uri, x, y, alt):
+def ringed(view: picture.View, uri: str, x: float, y: float, alt: str) -> Markup:
     """A picture with a ring around the place (column, row)."""
     rows, columns = view.depth.shape
     size = columns / 20.0
     rings = [
-        element("circle", cx=x, cy=y, r=size, fill="none", stroke=colour, stroke_width=size / thin)
+        element(
+            "circle",
+            cx=x,
+            cy=y,
+            r=size,
+            fill="none",
+            stroke=colour,
+            stroke_width=size / thin,
+        )
         for colour, thin in (("white", 3.2), (INK, 8.0))
     ]
     image = element("image", href=uri, x=0, y=0, width=columns, height=rows)
     return _svg(columns, rows, image, rings, class_="picture", aria_label=alt)
 
 
-def _placed(marks, columns, rows, size):
+def _placed(marks: Sequence[Any], columns: int, rows: int, size: tuple[int, int]) -> list[Any]:
     """Where the numbers stand: at the nearer border, one below the other, in their marks' order."""
     placed = {}
     for border, side in ((1.4 * size, False), (columns - 1.4 * size, True)):

@@ -1,11 +1,19 @@
 """The section of a report that tells whether the job's settings are fine enough."""
 
+from __future__ import annotations
+
 import math
+from typing import Any, TYPE_CHECKING
 
 from ..base import messages
+from ..base.kinds import Json
 from ..simulation.convergence_record import LEVELS, worst
 from .layout import table
 from .markup import element
+
+if TYPE_CHECKING:
+    from .markup import Markup
+    from .language import Language
 
 MOST_FACES = 8  # of the whole table, the worst ones
 NAMES = {
@@ -27,10 +35,14 @@ SETTINGS = {
     "contact_grid": "the contact grid",
 }
 UNITS = {"mm": "mm", "mm3": "mm³", "share": "%"}
-LEVEL_NAMES = {"coarse": "twice as coarse", "given": "as given", "fine": "twice as fine"}
+LEVEL_NAMES = {
+    "coarse": "twice as coarse",
+    "given": "as given",
+    "fine": "twice as fine",
+}
 
 
-def sentences(convergence, words):
+def sentences(convergence: Json, words: Language) -> list[str]:
     """Whether the settings are fine enough, in a few plain sentences."""
     band = 100 * convergence["band_share"]
     depths = [one for one in convergence["quantities"] if one["unit"] == "mm"]
@@ -72,12 +84,12 @@ def sentences(convergence, words):
     return [text for text in (said, rule, advice) if text]
 
 
-def name_of(one, words):
+def name_of(one: Json, words: Language) -> str:
     """What a quantity is called."""
     return words(NAMES[one["name"]], face=one["face"])
 
 
-def value_of(one, value, words, unit=False):
+def value_of(one: Json, value: float | None, words: Language, unit: bool = False) -> str:
     """A value of a quantity, and its unit if asked for."""
     if value is None:
         return words.number(None)
@@ -88,7 +100,7 @@ def value_of(one, value, words, unit=False):
     return f"{text} {UNITS[one['unit']]}" if unit else text
 
 
-def convergence_part(convergence, words):
+def convergence_part(convergence: Json, words: Language) -> list[Any]:
     """The sentences, the levels, and the table of all figures."""
     return [
         element("p", " ".join(sentences(convergence, words))),
@@ -102,7 +114,7 @@ def convergence_part(convergence, words):
     ]  # fmt: skip
 
 
-def _levels(convergence, words):
+def _levels(convergence: Json, words: Language) -> Markup:
     rows = []
     for level in LEVELS:
         found = convergence["levels"][level]
@@ -132,7 +144,7 @@ def _levels(convergence, words):
     return table(heads, rows, "list levels")
 
 
-def _figures(convergence, words):
+def _figures(convergence: Json, words: Language) -> list[Markup]:
     whole = [one for one in convergence["quantities"] if one["face"] is None]
     faces = [one for one in convergence["quantities"] if one["face"] is not None]
     faces.sort(key=lambda one: -(math.inf if one["error"] is None else one["error"]))
@@ -162,7 +174,8 @@ def _figures(convergence, words):
     ]
     left = len(faces) - MOST_FACES
     note = words(
-        "{count} more figures of faces, with smaller errors, stand in convergence.json.", count=left
+        "{count} more figures of faces, with smaller errors, stand in convergence.json.",
+        count=left,
     )
     return [
         table(heads, rows, "list convergence"),

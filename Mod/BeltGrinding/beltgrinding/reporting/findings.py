@@ -1,10 +1,14 @@
 """The sections of a report that judge: verdict, tolerances, events, and how sure all that is."""
 
+from __future__ import annotations
+
 from collections import Counter
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..base.kinds import Json
 from ..base.messages import body, event_message, event_title, notes, sentence, warnings
 from ..engine import core
 from ..inspection import finish_zones
@@ -14,12 +18,17 @@ from .convergence_section import convergence_part
 from .layout import section, table
 from .markup import element
 
+if TYPE_CHECKING:
+    from .content import Content
+    from .language import Language
+    from .markup import Markup
+
 MOST_EVENTS = 500  # rows of the full table
 MOST_PAIRS = 20  # of bodies, the nearest ones
 SEVERITIES = ("error", "warning", "info")
 
 
-def passed(content):
+def passed(content: Content) -> bool | None:
     """True, False, or None where it cannot be told."""
     verdict, summary = content.verdict, content.result.summary
     if verdict is not None:
@@ -35,7 +44,7 @@ def passed(content):
     return None if summary["missed_rays"] else True
 
 
-def head(content, words, scale):
+def head(content: Content, words: Language, scale: tuple[float, float, float]) -> Markup:
     """Title, verdict in one glance, and the figures that matter."""
     summary = content.result.summary
     deviation = summary["deviation_mm"]
@@ -73,7 +82,10 @@ def head(content, words, scale):
         element("p", words("Belt grinding report"), class_="kind"),
         element("h1", content.title),
         element(
-            "div", element("strong", text), element("p", " ".join(said)), class_=f"verdict {kind}"
+            "div",
+            element("strong", text),
+            element("p", " ".join(said)),
+            class_=f"verdict {kind}",
         ),
         [element("p", sentence(note, words.code), class_="note") for note in content.notes],
         element(
@@ -87,7 +99,7 @@ def head(content, words, scale):
     )
 
 
-def state(content, words):
+def state(content: Content, words: Language) -> tuple[str, str]:
     """("pass", "fail" or "open", the same in words); of a coarse run it says so."""
     kind, text = {
         True: ("pass", words("In tolerance")),
@@ -104,7 +116,7 @@ def state(content, words):
     return kind, text
 
 
-def in_tolerance(content, words, scale):
+def in_tolerance(content: Content, words: Language, scale: tuple[float, float, float]) -> str:
     """A sentence on the share of the area that is good."""
     zones = bool(content.result.job["inspection"].get("zones"))
     return words(
@@ -114,7 +126,7 @@ def in_tolerance(content, words, scale):
     )
 
 
-def _shares(content):
+def _shares(content: Content) -> tuple[float, ...]:
     """Shares of the inspected area: good, above and below, by the zones' limits where there are any."""
     verdict, summary = content.verdict, content.result.summary
     if verdict is not None:
@@ -122,7 +134,7 @@ def _shares(content):
     return tuple(summary[f"{side}_tolerance_area_share"] for side in ("in", "above", "below"))
 
 
-def spot(found, verdict, words):
+def spot(found: Json, verdict: Json | None, words: Language) -> str:
     """A few words on a worst spot."""
     beyond = f"{words.number(max(found['beyond'], 0.0))} mm"
     value = words.number(found["deviation"], 3, True)
@@ -139,7 +151,9 @@ def spot(found, verdict, words):
     return text
 
 
-def tolerance(content, words, scale):
+def tolerance(
+    content: Content, words: Language, scale: tuple[float, float, float]
+) -> Markup | None:
     """Tolerances per face or zone, clusters, and the histogram."""
     chart = charts.histogram(content.result.field, scale, words)
     caption = words(
@@ -159,7 +173,7 @@ def tolerance(content, words, scale):
     )
 
 
-def _by_face(content, words, scale):
+def _by_face(content: Content, words: Language, scale: tuple[float, float, float]) -> Markup:
     """The table of faces."""
     lower, upper, _ = scale
     found = faces_of(content.result.field, lower, upper)
@@ -193,7 +207,7 @@ def _by_face(content, words, scale):
     return [table(heads, rows, "list faces")]
 
 
-def faces_of(field, lower, upper):
+def faces_of(field: core.HeightField, lower: Any, upper: Any) -> list[dict[str, Any]]:
     """List of dicts, one a face of the field: ``face`` (from 1), ``area`` (mm2), shares ``in``,
     ``above``, ``below`` of what was inspected, ``min`` and ``max`` (mm; None: nothing inspected),
     ``missed`` (samples).
@@ -223,7 +237,7 @@ def faces_of(field, lower, upper):
     return found
 
 
-def events(content, words):
+def events(content: Content, words: Language) -> Markup | None:
     """What happens on the way, by kind; the first of each."""
     found = content.result.events
     if not found:
@@ -236,10 +250,16 @@ def events(content, words):
     order = sorted(counts, key=lambda kind: (_rank(first[kind]), -counts[kind], kind))
     rows = [
         (
-            [_severity(first[kind], words), element("b", words(event_title(first[kind])))],
+            [
+                _severity(first[kind], words),
+                element("b", words(event_title(first[kind]))),
+            ],
             words.whole(counts[kind]),
             where(first[kind], content.result.job, words),
-            [_begun(event_message(first[kind], words.code)), _advice(first[kind], words)],
+            [
+                _begun(event_message(first[kind], words.code)),
+                _advice(first[kind], words),
+            ],
         )
         for kind in order
     ]
@@ -252,7 +272,7 @@ def events(content, words):
     return section(words("Events"), table(heads, rows, "list events"), _clearances(content, words))
 
 
-def _clearances(content, words):
+def _clearances(content: Content, words: Language) -> list[Markup] | None:
     """How near the cell's bodies come to each other; None where none were given."""
     found = content.result.summary.get("clearances")
     if not found:
@@ -273,29 +293,33 @@ def _clearances(content, words):
     return [element("h3", words("Clearances")), table(heads, rows)]
 
 
-def _begun(text):
+def _begun(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
-def _rank(event):
+def _rank(event: Json) -> int:
     severity = event.get("severity", "warning")
     return SEVERITIES.index(severity) if severity in SEVERITIES else len(SEVERITIES)
 
 
-def _severity(event, words):
+def _severity(event: Json, words: Language) -> list[Markup | str] | None:
     """A dot in the severity's colour, told in words as well; nothing where it is not known."""
     severity = event.get("severity")
     if severity not in SEVERITIES:
         return None
-    text = {"error": words("error"), "warning": words("warning"), "info": words("note")}[severity]
+    text = {
+        "error": words("error"),
+        "warning": words("warning"),
+        "info": words("note"),
+    }[severity]
     return [element("span", text, class_=f"severity {severity}"), " "]
 
 
-def _advice(event, words):
+def _advice(event: Json, words: Language) -> Markup | None:
     return element("p", words(event["advice"]), class_="advice") if event.get("advice") else None
 
 
-def where(event, job, words):
+def where(event: Json, job: Json, words: Language) -> str:
     """Program, pose, line and time of an event."""
     parts = []
     if len(job["programs"]) > 1:
@@ -307,7 +331,7 @@ def where(event, job, words):
     return ", ".join(parts)
 
 
-def all_events(content, words):
+def all_events(content: Content, words: Language) -> Markup | None:
     """The table of all events, at the report's end."""
     found = content.result.events
     if not found:
@@ -341,12 +365,12 @@ def all_events(content, words):
     )
 
 
-def where_short(event, job, words):
+def where_short(event: Json, job: Json, words: Language) -> str:
     """As ``where``, without the time."""
     return where(event, job, words).rpartition(", ")[0]
 
 
-def trust(content, words):
+def trust(content: Content, words: Language) -> Markup | None:
     """How sure the result is: doubtful things, uncertainty, convergence, warnings."""
     result = content.result
     rows = [
@@ -359,14 +383,19 @@ def trust(content, words):
             result.job, result.summary, result.events, content.verdict, words
         )
     ]
-    heads = [(words("Count"), "number"), (words("Doubtful"), ""), (words("What it means"), "")]
+    heads = [
+        (words("Count"), "number"),
+        (words("Doubtful"), ""),
+        (words("What it means"), ""),
+    ]
     told = warnings(result.summary, words.code)
     if content.verdict is not None:
         told += notes(content.verdict, words.code)
     return section(
         words("How sure is that?"),
         element(
-            "p", words("Everything that weakens the result is counted here, also where it is zero.")
+            "p",
+            words("Everything that weakens the result is counted here, also where it is zero."),
         ),
         table(heads, rows, "list doubts"),
         element("ul", [element("li", text) for text in told], class_="warnings") if told else None,
@@ -375,7 +404,7 @@ def trust(content, words):
     )
 
 
-def _uncertainty(summary, words):
+def _uncertainty(summary: Json, words: Language) -> Markup:
     if "deviation_sd_mm" not in summary:
         text = words(
             "How far the true deviation may differ is not known: the law was not calibrated."
@@ -393,7 +422,7 @@ def _uncertainty(summary, words):
     return element("p", text)
 
 
-def _convergence(convergence, words):
+def _convergence(convergence: Json | None, words: Language) -> list[Any]:
     head = element("h3", words("Are the settings fine enough?"))
     if convergence is None:
         text = words("This was not checked.")

@@ -1,20 +1,28 @@
 """The part of a report that tells how hot the part became."""
 
-from pathlib import Path
+from __future__ import annotations
 
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..base.kinds import Json
 from . import verdict_section
 from .layout import facts, section
 from .markup import element
 
+if TYPE_CHECKING:
+    from .language import Language
+    from .markup import Markup
 
-def heat(verdict, words):
+
+def heat(verdict: Json | None, words: Language) -> Markup | None:
     """The section; None where no temperatures were computed. ``verdict`` may be None."""
     found = (verdict or {}).get("heat")
-    if found is None:
+    if verdict is None or found is None:
         return None
     worst = found["worst"]
 
-    def degrees(value):
+    def degrees(value: float | None) -> str:
         return f"{words.number(value, 0)} °C"
 
     likely = words(

@@ -1,9 +1,19 @@
 """The pieces that a report's sections are made of."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
 from .markup import Markup, element
 
+if TYPE_CHECKING:
+    from .markup import Child
 
-def whole_page(title, style, body, language, policy=None):
+
+def whole_page(
+    title: str, style: str, body: Child, language: str, policy: Child | None = None
+) -> str:
     """A whole HTML text. ``style``: its CSS; ``body``: its elements; ``policy``: an element of its head."""
     html = element(
         "html",
@@ -21,14 +31,14 @@ def whole_page(title, style, body, language, policy=None):
     return "<!DOCTYPE html>\n" + html + "\n"
 
 
-def section(title, *children, **attributes):
+def section(title: str, *children: Child, **attributes: object) -> Markup | None:
     """A section with its heading; nothing without any child."""
     if all(child is None for child in children):
         return None
     return element("section", element("h2", title), *children, **attributes)
 
 
-def facts(pairs, class_="facts"):
+def facts(pairs: Iterable[tuple[Child, Child]], class_: str = "facts") -> Markup:
     """A table of labels and values."""
     body = [
         element("tr", element("th", label, scope="row"), element("td", value))
@@ -37,11 +47,16 @@ def facts(pairs, class_="facts"):
     return element("table", element("tbody", body), class_=class_)
 
 
-def table(heads, rows, class_="list"):
+def table(
+    heads: Sequence[tuple[str, str]],
+    rows: Iterable[Sequence[Child]],
+    class_: str = "list",
+) -> Markup:
     """A table; ``heads``: (text, class of its column's cells or '')."""
     body = [
         element(
-            "tr", [element("td", cell, class_=kind or None) for cell, (_, kind) in zip(row, heads)]
+            "tr",
+            [element("td", cell, class_=kind or None) for cell, (_, kind) in zip(row, heads)],
         )
         for row in rows
     ]

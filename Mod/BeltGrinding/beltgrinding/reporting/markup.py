@@ -1,18 +1,26 @@
 """HTML and SVG from elements, in which no text of a user can become markup."""
 
+from __future__ import annotations
+
 import base64
 import re
+from collections.abc import Iterable
 from html import escape
+from typing import Any, TypeAlias
 
 FORBIDDEN = re.compile("[^\t\n\x20-\x7e\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 VOID = {"meta", "link", "br", "img", "col", "input"}  # HTML: elements without an end
+
+
+# Text, which is escaped; markup; None, which is left out; or lists of them.
+Child: TypeAlias = Any
 
 
 class Markup(str):
     """Text that is markup already."""
 
 
-def element(tag, *children, **attributes):
+def element(tag: str, *children: Child, **attributes: object) -> Markup:
     """An element. Children: text (escaped), ``Markup``, None (left out), or lists of them.
 
     An underscore at an attribute's end is dropped (``class_``), others become hyphens; one that is
@@ -28,9 +36,9 @@ def element(tag, *children, **attributes):
     return Markup(start if tag in VOID else f"{start}{join(children)}</{tag}>")
 
 
-def join(children):
+def join(children: Iterable[Child]) -> Markup:
     """The markup of children one after the other."""
-    parts = []
+    parts: list[str] = []
     for child in children:
         if isinstance(child, Markup):
             parts.append(child)
@@ -41,12 +49,12 @@ def join(children):
     return Markup("".join(parts))
 
 
-def _text(value):
+def _text(value: object) -> str:
     """Without what no document may hold: control characters, halves of surrogate pairs."""
     text = f"{value:.2f}".rstrip("0").rstrip(".") if isinstance(value, float) else str(value)
     return FORBIDDEN.sub("\ufffd", text)
 
 
-def data_uri(data, kind):
+def data_uri(data: bytes, kind: str) -> str:
     """``data`` (bytes) as an address that holds it; ``kind``: its media type."""
     return f"data:{kind};base64,{base64.b64encode(data).decode()}"

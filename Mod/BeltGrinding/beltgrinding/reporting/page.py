@@ -1,12 +1,31 @@
 """A report's page, put together from its sections."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, TYPE_CHECKING
+
+from ..base.kinds import Json
 from ..base.resources import resources
 from . import charts, facts, findings, finish_section, heat_section, reproduction, view
 from .layout import facts as rows, section, whole_page
 from .markup import element
 
+if TYPE_CHECKING:
+    from .markup import Markup
+    from .content import Content
+    from .language import Language
 
-def document(content, words, scale, spots, drawn, shown=None, lacking=None):
+
+def document(
+    content: Content,
+    words: Language,
+    scale: tuple[float, float, float],
+    spots: Sequence[Json],
+    drawn: Mapping[str, Any],
+    shown: Any = None,
+    lacking: str | None = None,
+) -> str:
     """The whole HTML text; with the 3D view ``shown`` (a ``view.View``), or a note on what it ``lacks``."""
     title = words("Belt grinding: {part}", part=content.title)
     style = (resources() / "report" / "report.css").read_text(encoding="utf-8")
@@ -31,7 +50,15 @@ def document(content, words, scale, spots, drawn, shown=None, lacking=None):
     )
 
 
-def _pictures(content, words, scale, spots, drawn, shown, lacking):
+def _pictures(
+    content: Content,
+    words: Language,
+    scale: tuple[float, float, float],
+    spots: Sequence[Json],
+    drawn: Mapping[str, Any],
+    shown: Any,
+    lacking: Any,
+) -> Markup:
     shots = []
     names = {"front": words("Front"), "back": words("Back")}
     for key, name in names.items():
@@ -49,7 +76,10 @@ def _pictures(content, words, scale, spots, drawn, shown, lacking):
         name = words("Spot {number}", number=spot["number"])
         picture = charts.ringed(shot.view, shot.uri, *shot.marks[0][1:], name)
         text = element(
-            "figcaption", element("b", name), ": ", findings.spot(spot, content.verdict, words)
+            "figcaption",
+            element("b", name),
+            ": ",
+            findings.spot(spot, content.verdict, words),
         )
         close.append(element("figure", picture, text))
     intro = words(
@@ -62,7 +92,11 @@ def _pictures(content, words, scale, spots, drawn, shown, lacking):
     )
     return section(
         words("Pictures"),
-        element("p", intro, " " + own if content.result.job["inspection"].get("zones") else None),
+        element(
+            "p",
+            intro,
+            " " + own if content.result.job["inspection"].get("zones") else None,
+        ),
         None if lacking is None else element("p", lacking, class_="note"),
         None if shown is None else shown.markup,
         charts.legend(scale, words),
@@ -72,14 +106,14 @@ def _pictures(content, words, scale, spots, drawn, shown, lacking):
     )
 
 
-def _process(content, words):
+def _process(content: Content, words: Language) -> Markup:
     chart = charts.series(content.bins, words)
     if chart is None:
         chart = element("p", words("The result holds no time series."), class_="unknown")
     return section(words("Process over time"), chart, class_="process")
 
 
-def _what(content, words):
+def _what(content: Content, words: Language) -> Markup:
     job, summary = content.result.job, content.result.summary
     formula, law = facts.law(job, words)
     return section(

@@ -1,10 +1,14 @@
 """The pictures of a report: the whole part from two sides, and its worst spots from near."""
 
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..base.kinds import Context, Json
 from ..engine import core
 from ..inspection import picture
 from .markup import data_uri
@@ -17,10 +21,18 @@ class Shot(NamedTuple):
 
     view: picture.View
     uri: str
-    marks: list
+    marks: list[tuple[int, float, float]]
 
 
-def draw(field, scale, shape, spots, context=None, near=True, beside=None):
+def draw(
+    field: core.HeightField,
+    scale: tuple[float, float, float],
+    shape: core.Shape | None,
+    spots: Sequence[Json],
+    context: Context = None,
+    near: bool = True,
+    beside: Callable[[Mapping[str, picture.View]], Any] | None = None,
+) -> dict[str, Any]:
     """dict: ``front`` and ``back``, a ``Shot`` each; ``close``: list of those of ``spots``, if ``near``;
     ``beside``: what ``beside`` returns for the ``View`` of front and back, meanwhile, in a thread of its own.
     """
@@ -39,7 +51,10 @@ def draw(field, scale, shape, spots, context=None, near=True, beside=None):
         close = []
         for spot in spots if near else ():
             view = studio.close_up(
-                np.array(spot["point"]), np.array(spot["normal"]), spot["extent"], context
+                np.array(spot["point"]),
+                np.array(spot["normal"]),
+                spot["extent"],
+                context,
             )
             x, y, _ = view.project([spot["point"]])[0]
             close.append(Shot(view, packing.submit(_uri, view), [(spot["number"], x, y)]))
@@ -50,11 +65,11 @@ def draw(field, scale, shape, spots, context=None, near=True, beside=None):
         }
 
 
-def _packed(shot):
+def _packed(shot: Shot) -> Shot:
     return shot._replace(uri=shot.uri.result())
 
 
-def _marks(view, spots, slack):
+def _marks(view: picture.View, spots: Sequence[Json], slack: float) -> list[Any]:
     if not spots:
         return []
     points = np.array([spot["point"] for spot in spots])
@@ -67,5 +82,5 @@ def _marks(view, spots, slack):
     ]
 
 
-def _uri(view):
+def _uri(view: picture.View) -> str:
     return data_uri(picture.png(view.pixels), "image/png")

@@ -1,35 +1,33 @@
 """The report of a result: one HTML file that holds everything, and a PDF of it."""
 
+from __future__ import annotations
+from typing import Any
+
 import os
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
 
 from ..base.files import cannot_be_written, write_whole
+from ..base.kinds import Context
 from ..engine import InputError, core
 from ..inspection import verdict as verdicts
 from ..job import workpiece
 from ..job.tolerances import colour_scale
 from ..simulation.result import Result
 from . import charts, page, pictures, view, worst_spots
+from .content import Content
 from .language import Language
 
 
-class Content(NamedTuple):
-    """What a report tells of. ``shape``, ``verdict``, ``convergence`` and ``bins`` (the time series of
-    ``charts.binned``) are None where there is none; ``title``: of the part.
-    """
-
-    result: Result
-    title: str
-    source: str  # where the result lies; '' for a document's
-    shape: object
-    bins: dict
-    verdict: dict
-    convergence: dict
-    notes: list  # sentences that are shown on top
-
-
-def report(result, output=None, pdf=None, language="en", title=None, context=None, notes=()):
+def report(
+    result: Result | Path | str,
+    output: Path | str | None = None,
+    pdf: Path | str | None = None,
+    language: str = "en",
+    title: str | None = None,
+    context: Context = None,
+    notes: Sequence[str] = (),
+) -> Path:
     """Writes the report of a result as one self-contained HTML file, as a PDF, or as both.
 
     ``result``: the folder that a run wrote, or a ``Result``; ``output``: the file, by default
@@ -57,7 +55,7 @@ def report(result, output=None, pdf=None, language="en", title=None, context=Non
     return output
 
 
-def write(result, files):
+def write(result: Result, files: Mapping[Path, bytes]) -> None:
     """Writes bytes by path. Those in the result's own folder belong to it from now on: another result
     removes them."""
     folder = os.path.realpath(result.folder) if result.folder else None
@@ -73,7 +71,12 @@ def write(result, files):
             raise cannot_be_written(error.filename or path, error) from None
 
 
-def load(result, title=None, notes=(), context=None):
+def load(
+    result: Result | Path | str,
+    title: str | None = None,
+    notes: Sequence[str] = (),
+    context: Context = None,
+) -> Content:
     """The ``Content`` of a folder that a run wrote, or of a ``Result``. Raises InputError."""
     source = ""
     if not isinstance(result, Result):
@@ -105,7 +108,7 @@ def load(result, title=None, notes=(), context=None):
     )
 
 
-def _verdict(result, shape, notes):
+def _verdict(result: Result, shape: core.Shape | None, notes: list[Any]) -> dict[str, Any] | None:
     """The result's verdict; of an older one, it is found now. None where it cannot be."""
     if result.verdict is not None:
         return result.verdict
@@ -116,7 +119,13 @@ def _verdict(result, shape, notes):
         return None
 
 
-def render(content, words, context=None, turning=True, still=True):
+def render(
+    content: Content,
+    words: Language,
+    context: Context = None,
+    turning: bool = True,
+    still: bool = True,
+) -> tuple[str | None, str | None]:
     """(without, with) the 3D view: the HTML texts of a ``Content`` in the words of a ``Language``; not
     ``turning``: twice without; not ``still``: None in place of the first.
     """
@@ -125,7 +134,7 @@ def render(content, words, context=None, turning=True, still=True):
     found = worst_spots.worst(result.field, scale[:2], content.verdict)
     lacking = view.missing(words) if turning else None
 
-    def turned(sides):
+    def turned(sides: Any) -> Any:
         return view.view(content, scale, found, sides, words, context)
 
     beside = turned if turning and lacking is None else None
@@ -136,11 +145,14 @@ def render(content, words, context=None, turning=True, still=True):
     return plain, page.document(content, words, scale, found, drawn, drawn["beside"], lacking)
 
 
-def _printer():
+def _printer() -> Callable[[str], bytes]:
     """html -> bytes of a PDF. Raises InputError where there is no WeasyPrint."""
     try:
         from weasyprint import HTML
-    except (ImportError, OSError) as error:  # OSError: a library of the system that it needs
+    except (
+        ImportError,
+        OSError,
+    ) as error:  # OSError: a library of the system that it needs
         raise InputError(
             "reporting.no_weasyprint",
             "a PDF needs WeasyPrint ({reason}); install Debian's weasyprint, or print the "

@@ -1,12 +1,21 @@
 """How to repeat a result: versions, hashes of the inputs, and the job file itself."""
 
+from __future__ import annotations
+
 import json
 import re
 from pathlib import Path
+from typing import Any, TYPE_CHECKING
 
 from ..job import inputs
 from .layout import section, table
 from .markup import data_uri, element
+
+if TYPE_CHECKING:
+    from ..simulation.result import Result
+    from .content import Content
+    from .language import Language
+    from .markup import Markup
 
 _NAMES = {
     "beltgrinding": "Belt Grinding",
@@ -19,13 +28,13 @@ FORBIDDEN = re.compile(r"[^\w .,()+-]")  # in a file's name, also in a command l
 LONG = 400  # characters of a text, or items of a list, beyond which the shown job leaves it out
 
 
-def repeat(content, words):
+def repeat(content: Content, words: Language) -> Markup | None:
     result = content.result
     versions = ", ".join(
         f"{_NAMES.get(name, name)} {version}"
         for name, version in result.summary["versions"].items()
     )
-    data = json.dumps(result.job, indent=1, ensure_ascii=False)
+    data = json.dumps(result.job, indent=1, ensure_ascii=False, allow_nan=False)
     # A title may hold what a shell runs.
     name = FORBIDDEN.sub("_", content.title).lstrip("-.") + ".job.json"
     link = element(
@@ -38,7 +47,11 @@ def repeat(content, words):
     return section(
         words("How to repeat it"),
         element("p", words("Save "), link, words(" and run:")),
-        element("pre", f'beltgrind run "{name}" -o out\nbeltgrind report out', class_="command"),
+        element(
+            "pre",
+            f'beltgrind run "{name}" -o out\nbeltgrind report out',
+            class_="command",
+        ),
         element(
             "p",
             words(
@@ -52,13 +65,21 @@ def repeat(content, words):
         element(
             "details",
             element("summary", words("The job's settings")),
-            element("pre", json.dumps(_short(result.job, words), indent=1, ensure_ascii=False)),
+            element(
+                "pre",
+                json.dumps(
+                    _short(result.job, words),
+                    indent=1,
+                    ensure_ascii=False,
+                    allow_nan=False,
+                ),
+            ),
             class_="job",
         ),
     )
 
 
-def _hashes(result, words):
+def _hashes(result: Result, words: Language) -> Markup | list[Markup]:
     """The inputs' table; what has changed since the run is said."""
     then = result.summary.get("inputs")
     now = inputs.digests(result.job)
@@ -89,7 +110,7 @@ def _hashes(result, words):
     return [element("p", note, class_="unknown"), listed]
 
 
-def _short(value, words):
+def _short(value: Any, words: Language) -> Any:
     """A job without its long texts and lists."""
     if isinstance(value, dict):
         return {key: _short(one, words) for key, one in value.items()}

@@ -1,15 +1,24 @@
 """The part of a report that shows a verdict: zones, faces, clusters and the motions that made them."""
 
-from pathlib import Path
+from __future__ import annotations
 
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..base.kinds import Json
 from .layout import table
 from .markup import element
+
+if TYPE_CHECKING:
+    from .language import Language
+    from .markup import Markup
 
 MOST_CLUSTERS = 15
 MOST_MOTIONS = 3  # named of a cluster
 
 
-def zones(verdict, words):
+def zones(verdict: Json, words: Language) -> list[Any] | None:
     """The table of tolerance zones, and of their thicknesses; None where the job has no zones."""
     found = [zone for zone in verdict["zones"] if zone["name"] is not None]
     if not found:
@@ -34,10 +43,14 @@ def zones(verdict, words):
                 *_figures(zone, words),
             )
         )
-    return [table(heads, rows, "list faces"), _thickness(found, words), _edges(found, words)]
+    return [
+        table(heads, rows, "list faces"),
+        _thickness(found, words),
+        _edges(found, words),
+    ]
 
 
-def faces(verdict, words):
+def faces(verdict: Json, words: Language) -> list[Any]:
     """The table of faces."""
     waves = [face.get("waviness") or {} for face in verdict["faces"]]
     shown = any(wave.get("along") or wave.get("across") for wave in waves)
@@ -53,10 +66,13 @@ def faces(verdict, words):
     note = words(
         "Waves: the greatest height Wt of what overlapping passes leave (ISO 21920-2), along profiles."
     )
-    return [table(heads, rows, "list faces"), element("p", note, class_="small") if shown else None]
+    return [
+        table(heads, rows, "list faces"),
+        element("p", note, class_="small") if shown else None,
+    ]
 
 
-def _heads(words):
+def _heads(words: Language) -> list[Any]:
     return [
         (words("Area, mm²"), "number"),
         (words("good"), "number"),
@@ -68,7 +84,7 @@ def _heads(words):
     ]
 
 
-def _figures(region, words):
+def _figures(region: Json, words: Language) -> list[str]:
     deviation = region["deviation_mm"] or {"min": None, "max": None}
     return [
         words.number(region["area_mm2"], 1),
@@ -81,20 +97,24 @@ def _figures(region, words):
     ]
 
 
-def mark(verdict, words):
+def mark(verdict: str, words: Language) -> Markup:
     """pass, fail or unknown as a coloured word."""
-    text = {"pass": words("pass"), "fail": words("fail"), "unknown": words("not known")}[verdict]
+    text = {
+        "pass": words("pass"),
+        "fail": words("fail"),
+        "unknown": words("not known"),
+    }[verdict]
     return element("span", text, class_=f"mark {verdict}")
 
 
-def _wave(wave, words):
+def _wave(wave: Json | None, words: Language) -> str:
     return words.number(1000.0 * wave["Wt_mm"], 1) if wave else words.number(None)
 
 
-def _edges(found, words):
+def _edges(found: Json, words: Language) -> list[Markup] | None:
     """The table of edge zones' profiles."""
 
-    def span(figures):
+    def span(figures: Json | None) -> str:
         if not figures:
             return "–"
         return f"{words.number(figures['min'], 3)} … {words.number(figures['max'], 3)}"
@@ -123,7 +143,7 @@ def _edges(found, words):
     return [element("h3", words("Edges")), table(heads, rows, "list faces")]
 
 
-def _thickness(found, words):
+def _thickness(found: Json, words: Language) -> list[Markup] | None:
     rows = []
     for zone in found:
         thick = zone.get("thickness")
@@ -157,7 +177,7 @@ def _thickness(found, words):
     return [element("h3", words("Thickness")), table(heads, rows, "list faces")]
 
 
-def finishes(verdict, words):
+def finishes(verdict: Json, words: Language) -> Markup | None:
     """The table of what zones call for of the finish; None where none does."""
     rows = []
     for zone in verdict["zones"]:
@@ -186,7 +206,7 @@ def finishes(verdict, words):
     return table(heads, rows, "list faces")
 
 
-def clusters(verdict, words):
+def clusters(verdict: Json, words: Language) -> list[Any] | None:
     """The places out of tolerance, largest first, with the lines of the program that made them."""
     found = verdict["clusters"]
     if not found:
@@ -230,12 +250,12 @@ def clusters(verdict, words):
     ]
 
 
-def place(point, words):
+def place(point: Sequence[float], words: Language) -> str:
     """A point, mm."""
     return ", ".join(words.number(value, 1) for value in point)
 
 
-def made_by(cluster, programs, words):
+def made_by(cluster: Json, programs: Sequence[Json], words: Language) -> str:
     """The motions that made a cluster, in a few words."""
     parts = []
     untouched = cluster["untouched_share"]

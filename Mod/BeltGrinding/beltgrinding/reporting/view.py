@@ -1,16 +1,24 @@
 """The 3D view of a page: its markup, its data and the scripts that draw it. Drawn by three.js (WebGL)."""
 
+from __future__ import annotations
+
 import base64
 import hashlib
 import json
 import re
-from typing import NamedTuple
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+from ..base.kinds import Context, Json
 from ..base.messages import sentence
 from ..base.resources import resources
 from ..engine import InputError
 from . import view_data, view_library
 from .markup import Markup, element
+
+if TYPE_CHECKING:
+    from .content import Content
+    from .language import Language
 
 SCRIPTS = (  # Resources/report, in one scope
     "view_data.js",
@@ -28,11 +36,19 @@ class View(NamedTuple):
     """``markup`` goes where the view stands, ``scripts`` to the page's end, ``style`` into its head."""
 
     markup: Markup
-    scripts: list
+    scripts: list[Markup]
     style: str
 
 
-def view(content, scale, spots, sides, words, context=None, alone=False):
+def view(
+    content: Content,
+    scale: tuple[float, float, float],
+    spots: Sequence[Json],
+    sides: Mapping[str, Any],
+    words: Language,
+    context: Context = None,
+    alone: bool = False,
+) -> View:
     """The ``View`` of a report's ``Content``, from the directions of ``sides``, the ``picture.View`` of front
     and back; ``alone``: it fills the page. Raises InputError without three.js, and Cancelled.
     """
@@ -44,11 +60,18 @@ def view(content, scale, spots, sides, words, context=None, alone=False):
     own = "\n".join((folder / name).read_text(encoding="utf-8") for name in SCRIPTS)
     own = f'(() => {{\n"use strict";\n{own}\n}})();'
     # "<" cannot stand in it: no text of a user can end the element.
-    told = json.dumps(about, ensure_ascii=True, separators=(",", ":")).replace("<", "\\u003c")
+    told = json.dumps(about, ensure_ascii=True, separators=(",", ":"), allow_nan=False).replace(
+        "<", "\\u003c"
+    )
     licence = "".join(f" * {line}".rstrip() + "\n" for line in library.licence.splitlines())
     scripts = [
         element("script", Markup(told), type="application/json", id="view-about"),
-        element("script", Markup(data.arrays), type="application/octet-stream", id="view-arrays"),
+        element(
+            "script",
+            Markup(data.arrays),
+            type="application/octet-stream",
+            id="view-arrays",
+        ),
         element("script", Markup(_safe(f"/*\n{licence} */\n{library.script}"))),
         element("script", Markup(_safe(own))),
     ]
@@ -58,7 +81,7 @@ def view(content, scale, spots, sides, words, context=None, alone=False):
     return View(_markup(data.about, library, words, alone, notes), scripts, style)
 
 
-def missing(words):
+def missing(words: Language) -> str | None:
     """A sentence that says what a view would need; None where all is there."""
     try:
         view_library.library()
@@ -67,7 +90,7 @@ def missing(words):
     return None
 
 
-def policy(scripts=()):
+def policy(scripts: Iterable[str] = ()) -> Markup:
     """The page's Content-Security-Policy as an element: nothing is loaded, and only these scripts run."""
     hashes = []
     for script in scripts:
@@ -87,12 +110,12 @@ def policy(scripts=()):
     return element("meta", http_equiv="Content-Security-Policy", content="; ".join(rules))
 
 
-def _safe(script):
+def _safe(script: str) -> str:
     """A script that nothing in it can end: in strings ``<\\/`` is ``</``."""
     return re.sub(r"<(?=/script|!--)", r"\\x3c", script, flags=re.IGNORECASE)
 
 
-def _texts(words):
+def _texts(words: Language) -> dict[str, str]:
     """What the script says."""
     return {
         "in": words("in tolerance"),
@@ -115,7 +138,9 @@ def _texts(words):
     }
 
 
-def _markup(about, library, words, alone, notes):
+def _markup(
+    about: Json, library: Any, words: Language, alone: bool, notes: Sequence[Any]
+) -> Markup:
     spots = [
         element(
             "button",
@@ -142,7 +167,11 @@ def _markup(about, library, words, alone, notes):
     hint = words("Left button turns, right or Shift shifts, wheel zooms, double click centres")
     stage = element(
         "div",
-        element("canvas", tabindex="0", aria_label=words("The ground part, in three dimensions")),
+        element(
+            "canvas",
+            tabindex="0",
+            aria_label=words("The ground part, in three dimensions"),
+        ),
         element("div", id="view-marks"),
         element("div", id="view-axes"),
         element(
@@ -160,15 +189,15 @@ def _markup(about, library, words, alone, notes):
     return element("div", stage, panel, id="view", class_="alone" if alone else None, hidden=True)
 
 
-def _part(title, *children):
+def _part(title: str, *children: object) -> Markup:
     return element("section", element("h3", title), *children)
 
 
-def _button(name, text):
+def _button(name: str, text: str) -> Markup:
     return element("button", text, type="button", id=name)
 
 
-def _section(words):
+def _section(words: Language) -> list[Markup]:
     choices = (
         ("", words("none")),
         ("x", words("across {axis}", axis="x")),
@@ -199,7 +228,7 @@ def _section(words):
     ]  # fmt: skip
 
 
-def _wheel(about, words):
+def _wheel(about: Json, words: Language) -> Any:
     if about["wheel"] is None:
         return element(
             "p",
@@ -226,7 +255,7 @@ def _wheel(about, words):
     ]  # fmt: skip
 
 
-def _notes(about, library, words):
+def _notes(about: Json, library: Any, words: Language) -> str:
     told = []
     if about["samples"] < about["of"]:
         told.append(

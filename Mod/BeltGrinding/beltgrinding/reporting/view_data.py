@@ -4,20 +4,32 @@ Lengths mm, frame: work. The ground surface is the result's own samples; of more
 as it is, and the view says how many there are.
 """
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple, TYPE_CHECKING
 
 import numpy as np
 
 from ..base import frames
+from ..base.kinds import Array, Context, Json
 from ..cell import tool_path as tool_paths
 from ..cell.collision import wheel_profile
 from ..engine import InputError, core
 from ..inspection import picture, verdict as verdicts
 from ..job import machine as machines
 from ..job.poses import program_name
+from ..job.settings import Job
+from ..job.typed import typed
 from ..job.workpiece import frame_of
 from . import view_mesh, view_modes
+
+if TYPE_CHECKING:
+    from ..simulation.result import Result
+    from .content import Content
+    from .language import Language
+    from .view_mesh import Packed
 
 MOST_SAMPLES = 160_000
 MOST_TRIANGLES = 150_000  # of the rest of the part
@@ -36,11 +48,18 @@ class Data(NamedTuple):
     the packed arrays.
     """
 
-    about: dict
+    about: dict[str, Any]
     arrays: str
 
 
-def data(content, scale, spots, sides, words, context=None):
+def data(
+    content: Content,
+    scale: tuple[float, float, float],
+    spots: Sequence[Json],
+    sides: Sequence[Array],
+    words: Language,
+    context: Context = None,
+) -> Data:
     """The ``Data`` of a report's ``Content``. ``scale``: (lower, upper, limit) of the deviation, mm;
     ``spots``: as ``worst_spots.worst`` gives them; ``sides``: the directions in which one looks from the
     front and from the back, unit vectors. Raises Cancelled.
@@ -55,11 +74,24 @@ def data(content, scale, spots, sides, words, context=None):
         most = int(0.9 * most * MOST_BYTES / len(made.arrays))
 
 
-def _made(content, scale, spots, sides, rest, most, words, context):
+def _made(
+    content: Content,
+    scale: tuple[float, float, float],
+    spots: Sequence[Json],
+    sides: Any,
+    rest: Any,
+    most: int,
+    words: Language,
+    context: Context,
+) -> Data:
     result, field = content.result, content.result.field
     packed = view_mesh.Packed()
     known = np.where((field.flags & core.MISSED) == 0, field.height, 0.0)
-    worst = [*(spot["sample"] for spot in spots), int(known.argmin()), int(known.argmax())]
+    worst = [
+        *(spot["sample"] for spot in spots),
+        int(known.argmin()),
+        int(known.argmax()),
+    ]
     chosen, triangles, outline = _mesh(field, most, worst)
     points, rays = field.points[chosen], field.rays[chosen]
     longer = np.linalg.norm(rays, axis=1)
@@ -89,15 +121,15 @@ def _made(content, scale, spots, sides, rest, most, words, context):
         "camera": {"front": front, "back": back, "up": list(picture.UPRIGHT)},
         "modes": modes,
         "spots": [_spot(spot, words) for spot in spots],
-        **_regions(result.job, field, chosen, packed),
+        **_regions(typed(result.job), field, chosen, packed),
         **_motions(result, chosen, packed, words),
-        "wheel": _wheel(result.job, packed, words),
+        "wheel": _wheel(typed(result.job), packed, words),
         "arrays": packed.index,
     }
     return Data(about, packed.text())
 
 
-def _mesh(field, most, keep):
+def _mesh(field: core.HeightField, most: int, keep: Any) -> tuple[Array, Array, Array]:
     """(chosen (k,), triangles (m, 3), outline (j, 2)) of a field: about ``most`` of its samples, those of
     ``keep`` among them, and their edges to be drawn.
     """
@@ -113,7 +145,7 @@ def _mesh(field, most, keep):
     return chosen, triangles, view_mesh.proper_edges(place[sharp])
 
 
-def _rest(content, context):
+def _rest(content: Content, context: Context) -> tuple[Array, Array, Array]:
     """(corners (n, 3), normals (n, 3), triangles (m, 3)) of the faces that are not ground; empty where there
     are none.
     """
@@ -134,17 +166,21 @@ def _rest(content, context):
         return corners, normals, triangles
     same = np.zeros(len(corners), dtype=np.int64)
     kept, place = view_mesh.thinned(corners, normals, same, MOST_TRIANGLES // 2)
-    return corners[kept], normals[kept], view_mesh.proper_triangles(core.replaced(triangles, place))
+    return (
+        corners[kept],
+        normals[kept],
+        view_mesh.proper_triangles(core.replaced(triangles, place)),
+    )
 
 
-def _solid(shape, field):
+def _solid(shape: core.Shape | None, field: core.HeightField) -> bool:
     """Whether the ground faces bound a solid, so that what one sees from behind is its inside."""
     if shape is None:
         return False
     return all(shape.bounds_solid(int(face)) for face in np.unique(field.faces)[:ASKED])
 
 
-def _spot(spot, words):
+def _spot(spot: Json, words: Language) -> dict[str, Any]:
     text = f"{words.number(spot['deviation'], 3, True)} mm, Face{spot['face']}"
     motions = spot["cluster"]["motions"][:1] if "cluster" in spot else ()
     if motions and motions[0]["line"]:
@@ -159,19 +195,19 @@ def _spot(spot, words):
     }
 
 
-def _regions(job, field, chosen, packed):
+def _regions(job: Job, field: core.HeightField, chosen: Array, packed: Packed) -> dict[str, Any]:
     """Which face and which zone every sample belongs to, and the zones' limits."""
     faces, number = np.unique(field.faces, return_inverse=True)
     packed.add("faces", number.reshape(-1)[chosen], "u2" if len(faces) < 65536 else "u4")
-    inspection = job["inspection"]
-    zones = inspection.get("zones", [])
+    inspection = job.inspection
+    zones = inspection.zones
     packed.add("zones", verdicts.zone_of_samples(job, field)[chosen], "u2")
-    rest = inspection["tolerance_mm"]
-    limits = [[zone["name"], *zone.get("tolerance_mm", rest)] for zone in zones]
+    rest = inspection.tolerance_mm
+    limits = [[zone.name, *(zone.tolerance_mm or rest)] for zone in zones]
     return {"faces": (faces + 1).tolist(), "zones": [*limits, [None, *rest]]}
 
 
-def _motions(result, chosen, packed, words):
+def _motions(result: Result, chosen: Array, packed: Packed, words: Language) -> dict[str, Any]:
     """The motions that removed most and last of every sample (0: none, else from 1), and their names."""
     trace, motions = result.field.trace, result.motions
     if trace is None:
@@ -186,13 +222,13 @@ def _motions(result, chosen, packed, words):
     return {"traced": True, "programs": [words.short(name) for name in names]}
 
 
-def _wheel(job, packed, words):
+def _wheel(job: Job, packed: Packed, words: Language) -> dict[str, Any] | None:
     """The wheel and its way over the work; None where the programs cannot be read any more, or of a machine without
     a wheel."""
-    if not machines.wheel_presses(job["belt_machine"]):
+    if not machines.wheel_presses(job.belt_machine):
         return None
     try:
-        paths = [tool_paths.tool_path(job, i, []) for i in range(len(job["programs"]))]
+        paths = [tool_paths.tool_path(job, i, []) for i in range(len(job.programs))]
     except InputError:
         return None
     whole = sum(path.duration() for path in paths)
@@ -201,12 +237,12 @@ def _wheel(job, packed, words):
     step, begin, first = max(whole / MOST_MOMENTS, SHORTEST), 0.0, 0
     times, places, motions = [], [], []
     cell = {
-        name: frame_of(job["cell"].get(name), f"cell.{name}") for name in tool_paths.CELL_FRAMES
+        name: frame_of(getattr(job.cell, name), f"cell.{name}") for name in tool_paths.CELL_FRAMES
     }
     for path in paths:
         moments = np.linspace(0.0, path.duration(), max(int(path.duration() / step), 1) + 1)
         base_from_tcp, poses = zip(*(path.frame_at(float(moment)) for moment in moments))
-        found = frames.work_from_frames(np.array(base_from_tcp), job["cell"]["holding"], **cell)
+        found = frames.work_from_frames(np.array(base_from_tcp), job.cell.holding, **cell)
         times.append(begin + moments)
         places.append(found["contact"])
         motions.append(first + np.array(poses, dtype=np.int64))
@@ -219,9 +255,9 @@ def _wheel(job, packed, words):
     packed.add("wheel.turn", np.round((turns + 1.0) * 0.5 * view_mesh.STEPS), "u2")
     packed.add("wheel.time", np.round(times * 1000.0), "u4")
     packed.add("wheel.motion", motions + 1, "u4")
-    wheel = job["belt_machine"]["wheel"]
+    wheel = job.belt_machine.wheel
     return {
-        "radius": wheel["radius_mm"],
+        "radius": wheel.radius_mm,
         "profile": wheel_profile(wheel).tolist(),
         "box": [low.tolist(), high.tolist()],
         "time": whole,

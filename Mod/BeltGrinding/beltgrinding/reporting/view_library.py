@@ -1,5 +1,7 @@
 """three.js, with which a browser draws the 3D view: Debian's libjs-three, read when a page is written."""
 
+from __future__ import annotations
+
 import os
 import re
 from pathlib import Path
@@ -25,7 +27,7 @@ class Library(NamedTuple):
     licence: str
 
 
-def library():
+def library() -> Library:
     """The ``Library``. Raises InputError where it is not installed, or is another release."""
     elsewhere = os.environ.get(ELSEWHERE)
     for path in map(Path, (elsewhere,) if elsewhere else PLACES):

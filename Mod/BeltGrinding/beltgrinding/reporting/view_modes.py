@@ -6,21 +6,38 @@ the packed array with ``low`` and ``high`` (what its least and greatest code sta
 of its legend, or ``swatches`` ([colour, text]); ``missing``: what it means where there is no value.
 """
 
+from __future__ import annotations
+
+from typing import Any, TYPE_CHECKING
+
 import numpy as np
 
+from ..base.kinds import Array, Context, Json
 from ..engine import core
 from ..inspection import finish, heat
 from ..inspection import verdict as verdicts
 from ..inspection.section_plot import ticks
 from . import view_mesh
 
+if TYPE_CHECKING:
+    from ..cell.motions import Motions
+    from .content import Content
+    from .language import Language
+    from .view_mesh import Packed
+
 TEXELS = 1024  # of a colour scale
 TAIL = 99.5  # % of the values lie below the end of a ramp without a sign
 MOST_SWATCHES = 12
-MISSED_COLOUR = "707070"  # that of core.deviation_colours
 
 
-def modes(content, scale, packed, chosen, words, context=None):
+def modes(
+    content: Content,
+    scale: tuple[float, float, float],
+    packed: Packed,
+    chosen: Array,
+    words: Language,
+    context: Context = None,
+) -> list[dict[str, Any]]:
     """List of the modes of a report's ``Content``, their values of the samples ``chosen`` (k,) added to
     ``packed``. ``scale``: (lower, upper, limit) of the deviation, mm. The first is the deviation.
     """
@@ -49,7 +66,13 @@ def modes(content, scale, packed, chosen, words, context=None):
         found.append(made.ramp("crossing", words("Angle of crossed scratches"), "°", 0, shown))
     if len(field.height_sd) == field.size:
         found.append(
-            made.ramp("sd", words("Uncertainty (one standard deviation)"), "mm", 4, field.height_sd)
+            made.ramp(
+                "sd",
+                words("Uncertainty (one standard deviation)"),
+                "mm",
+                4,
+                field.height_sd,
+            )
         )
     if len(field.measured) == field.size:
         measured = np.array(field.measured, dtype=float)
@@ -57,7 +80,12 @@ def modes(content, scale, packed, chosen, words, context=None):
             made.signed("measured", words("Scan: measured deviation"), measured, scale, True)
         )
         found.append(
-            made.signed("difference", words("Scan less prediction"), measured - field.height, scale)
+            made.signed(
+                "difference",
+                words("Scan less prediction"),
+                measured - field.height,
+                scale,
+            )
         )
     thick = verdicts.thickness_deviation(result.job, field, content.shape, context)
     if thick is not None:
@@ -69,7 +97,10 @@ def modes(content, scale, packed, chosen, words, context=None):
         most = float(np.percentile(known, TAIL)) if len(known) else 0.0
         limit = max(1.5 * abs(lower), 1.5 * abs(upper), most, 1e-4)
         mode = made.signed(
-            "thickness", words("Thickness against the design"), thick, (lower, upper, limit)
+            "thickness",
+            words("Thickness against the design"),
+            thick,
+            (lower, upper, limit),
         )
         found.append({**mode, "missing": words("not measured")})
     if len(np.unique(field.faces)) > 1:
@@ -78,12 +109,29 @@ def modes(content, scale, packed, chosen, words, context=None):
 
 
 class _Maker:
-    def __init__(self, field, scale, packed, chosen, words):
+    def __init__(
+        self,
+        field: core.HeightField,
+        scale: tuple[float, float, float],
+        packed: Packed,
+        chosen: Array,
+        words: Language,
+    ) -> None:
         self.field, self.scale, self.packed = field, scale, packed
         self.chosen, self.words = chosen, words
         self.seen = (field.flags & core.MISSED) == 0
 
-    def _mode(self, key, label, unit, decimals, sign, values, known, **more):
+    def _mode(
+        self,
+        key: str,
+        label: str,
+        unit: str,
+        decimals: int,
+        sign: bool,
+        values: Array,
+        known: Array,
+        **more: Any,
+    ) -> dict[str, Any]:
         codes, low, high = view_mesh.quantised(values[self.chosen], known[self.chosen])
         self.packed.add(f"mode.{key}", codes, "u2")
         return {
@@ -99,11 +147,18 @@ class _Maker:
             **more,
         }
 
-    def deviation(self):
+    def deviation(self) -> dict[str, Any]:
         label = self.words("Deviation from the design")
         return self.signed("deviation", label, self.field.height, self.scale, True)
 
-    def signed(self, key, label, values, scale, judged=False):
+    def signed(
+        self,
+        key: str,
+        label: str,
+        values: Array,
+        scale: tuple[float, float, float],
+        judged: bool = False,
+    ) -> dict[str, Any]:
         """In the colours of the deviation; ``judged``: with its words."""
         lower, upper, limit = scale
         middles = limit * (2.0 * (np.arange(TEXELS) + 0.5) / TEXELS - 1.0)
@@ -130,12 +185,16 @@ class _Maker:
             words=words,
         )
 
-    def verdict(self, job):
+    def verdict(self, job: Json) -> dict[str, Any]:
         """Where every sample lies in the band of its own zone: below 0, from 0 to 1, above 1."""
         lower, upper, limit = self.scale
         low, high = verdicts.limits(job, self.field)
         place = (self.field.height - low) / np.maximum(high - low, 1e-9)
-        told = (self.words("cut too deep"), self.words("good"), self.words("too much left"))
+        told = (
+            self.words("cut too deep"),
+            self.words("good"),
+            self.words("too much left"),
+        )
         samples = [0.5 * (lower - limit), 0.5 * (lower + upper), 0.5 * (upper + limit)]
         colours = _hex(core.colour_scale(lower, upper, limit, samples))
         return self._mode(
@@ -150,7 +209,9 @@ class _Maker:
             swatches=[[colour, text] for colour, text in zip(colours[::-1], told[::-1])],
         )
 
-    def ramp(self, key, label, unit, decimals, values, low=0.0):
+    def ramp(
+        self, key: str, label: str, unit: str, decimals: int, values: Array, low: Any = 0.0
+    ) -> dict[str, Any] | None:
         """What has no sign: light at ``low``, dark where all but a few values lie below."""
         values = np.asarray(values, dtype=float)
         known = self.seen & np.isfinite(values)
@@ -177,7 +238,7 @@ class _Maker:
             words=[],
         )
 
-    def motion(self, dominant, motions):
+    def motion(self, dominant: Array, motions: Motions | None) -> dict[str, Any] | None:
         """The motion that removed most, from the first to the last one that did."""
         known = self.seen & (dominant != core.NEVER)
         if not known.any():
@@ -203,7 +264,7 @@ class _Maker:
             missing=self.words("never touched"),
         )
 
-    def _line(self, number, motions):
+    def _line(self, number: int, motions: Motions | None) -> str:
         line = 0
         if motions is not None and number < len(motions["line"]):
             line = int(motions["line"][number])
@@ -211,7 +272,7 @@ class _Maker:
             return self.words("line {line}", line=line)
         return self.words("motion {number}", number=number + 1)
 
-    def faces(self):
+    def faces(self) -> dict[str, Any]:
         """Another colour for every face."""
         faces, number = np.unique(self.field.faces, return_inverse=True)
         colours = _hex(core.face_colours(faces.astype(np.uint32)))
@@ -233,10 +294,10 @@ class _Maker:
         )
 
 
-def _ramp():
+def _ramp() -> list[str]:
     shares = ((np.arange(TEXELS) + 0.5) / TEXELS).tolist()
     return _hex(core.uncertainty_scale(1.0, shares))
 
 
-def _hex(packed):
+def _hex(packed: Any) -> list[str]:
     return [f"{int(colour) >> 8:06x}" for colour in packed]

@@ -1,19 +1,42 @@
 """A result's 3D view as a page of its own."""
 
+from __future__ import annotations
+from typing import Any, TYPE_CHECKING
+from collections.abc import Mapping
+
 from pathlib import Path
 
+from ..base.kinds import Context
 from ..base.resources import resources
 from ..engine import InputError, core
 from ..job.tolerances import colour_scale
 from ..simulation import result_folder
 from ..simulation.result import Result
-from . import charts, findings, pictures, report, view as views, view_library, worst_spots
+from . import (
+    charts,
+    findings,
+    pictures,
+    report,
+    view as views,
+    view_library,
+    worst_spots,
+)
 from .language import Language
 from .layout import whole_page
 from .markup import element
 
+if TYPE_CHECKING:
+    from .content import Content
+    from .markup import Markup
 
-def view(result, output=None, language="en", title=None, context=None):
+
+def view(
+    result: Result | Path | str,
+    output: Path | str | None = None,
+    language: str = "en",
+    title: str | None = None,
+    context: Context = None,
+) -> Path:
     """Writes the 3D view of a result as one self-contained HTML file.
 
     ``result``: the folder that a run wrote, or a ``Result``; ``output``: the file, by default view.html in
@@ -30,7 +53,7 @@ def view(result, output=None, language="en", title=None, context=None):
     spots = worst_spots.worst(content.result.field, scale[:2], content.verdict)
     view_library.library()  # without it nothing need be drawn
 
-    def turned(sides):
+    def turned(sides: Any) -> Any:
         return views.view(content, scale, spots, sides, words, context, alone=True)
 
     field, shape = content.result.field, content.shape
@@ -41,7 +64,13 @@ def view(result, output=None, language="en", title=None, context=None):
     return output
 
 
-def _document(content, words, scale, shown, drawn):
+def _document(
+    content: Content,
+    words: Language,
+    scale: tuple[float, float, float],
+    shown: Any,
+    drawn: Mapping[str, Any],
+) -> Markup:
     title = words("Belt grinding: {part}", part=content.title)
     state, text = findings.state(content, words)
     head = element(
@@ -62,7 +91,9 @@ def _document(content, words, scale, shown, drawn):
     instead = element(
         "div",
         element(
-            "p", words("In place of the 3D view, which needs WebGL and JavaScript:"), class_="why"
+            "p",
+            words("In place of the 3D view, which needs WebGL and JavaScript:"),
+            class_="why",
         ),
         charts.legend(scale, words),
         element("div", figures, class_="views"),

@@ -1,7 +1,13 @@
 """The worst spots of a result: where a report looks closer."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 
+from ..base.kinds import Json
 from ..engine import core
 
 MOST = 6
@@ -9,7 +15,9 @@ LARGEST = 4  # of them are the largest clusters, the others the worst of the res
 APART = 0.25  # of the field's extents: what lies nearer belongs to the same spot
 
 
-def worst(field, tolerance, verdict=None):
+def worst(
+    field: core.HeightField, tolerance: Sequence[Any], verdict: Json | None = None
+) -> list[dict[str, Any]]:
     """List of dicts: ``number`` (that of the verdict's cluster, or from 1), ``sample``, ``point``,
     ``normal`` (mm, work), ``deviation`` and ``beyond`` (mm past the limit), ``face`` (from 1), ``extent`` (mm; 0: not
     known) and, of a verdict's cluster, ``cluster`` (the cluster's dict). At most ``MOST``; none where
@@ -38,7 +46,9 @@ def worst(field, tolerance, verdict=None):
     return found
 
 
-def _spot(field, k, deviation, beyond, extent=0.0):
+def _spot(
+    field: core.HeightField, k: int, deviation: float, beyond: float, extent: float = 0.0
+) -> dict[str, Any]:
     return {
         "sample": k,
         "point": field.points[k].tolist(),
@@ -50,8 +60,13 @@ def _spot(field, k, deviation, beyond, extent=0.0):
     }
 
 
-def _of_cluster(cluster, field):
+def _of_cluster(cluster: Json, field: core.HeightField) -> dict[str, Any]:
     k = int(cluster["worst"]["sample"])
     spot = _spot(field, k, cluster["worst"]["value_mm"], cluster["worst"]["beyond_mm"])
     extent = max(cluster["extent_mm"], cluster["width_mm"])
-    return {"number": cluster["number"], **spot, "extent": float(extent), "cluster": cluster}
+    return {
+        "number": cluster["number"],
+        **spot,
+        "extent": float(extent),
+        "cluster": cluster,
+    }

@@ -5,27 +5,38 @@ the first three columns: XYZ, ASC, TXT, CSV, PTS). Alignment is by the extension
 ``beltgrinding_scan``, which is optional when the workbench is built.
 """
 
+from __future__ import annotations
+
 import json
 import math
+from collections.abc import Callable, Collection, Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..base.files import json_bytes
+from ..base.kinds import Context, Facts, Floats, Json
 from ..engine import InputError, core, library
 from ..job import workpiece
-from . import file as scan_file, start as scan_start, trust
+from . import file as scan_file, sizes, start as scan_start, trust
+
+if TYPE_CHECKING:
+    from .file import Scan
+    from .kinds import Ground, Kept, Start
 
 FREEDOMS = ("tx", "ty", "tz", "rx", "ry", "rz")  # of the work frame; rotations about the centroid
 SHARE = 0.9  # of the pairs of points, the nearest: the rest is trimmed
 DATUM_SAMPLES = 60_000  # about; more do not place a part better
+SIZE_SAMPLES = 5_000  # of all faces
 LEAST_SHARE = 0.02  # of the part's area: less of it that is not ground is no datum
 LEAST_COSINE = 0.1  # between a sample's normal and that of the scan's triangle, for a mesh
 SEARCH_MARGIN = 1.0  # mm beyond the stock's greatest height
-LEAST_SIZE = 0.02  # of the datum's: a smaller scan is one in another unit
 PLAIN_SD = 0.02  # mm at the part's radius: a freedom that is known worse is told
 
 
-def extension():
+def extension() -> Any:
     """The module ``beltgrinding_scan``. Raises InputError saying what is missing."""
     try:
         return library.extension("beltgrinding_scan")
@@ -39,9 +50,11 @@ def extension():
         ) from None
 
 
-def datum(result, faces=None, context=None):
+def datum(
+    result: Ground, faces: Iterable[int] | None = None, context: Context = None
+) -> dict[str, Any]:
     """The surface that a scan is laid on: dict(points (n, 3), normals (n, 3), spacing, faces,
-    predicted), mm, work frame.
+    predicted; whole (m, 3) points of all faces, or None, ground of those that are ground), mm, work frame.
 
     ``faces``: numbers from 1; None: all that are not ground, or, where these are hardly any, the
     ground ones at their predicted height. Ground faces that are named are taken at their predicted
@@ -52,8 +65,8 @@ def datum(result, faces=None, context=None):
     ground = sorted({int(face) for face in np.unique(result.field.faces)})
     if faces is None:
         others = [i for i in range(shape.face_count) if i not in set(ground)]
-        area = [shape.face_area(i) for i in range(shape.face_count)]
-        enough = sum(area[i] for i in others) > LEAST_SHARE * sum(area)
+        areas = [shape.face_area(i) for i in range(shape.face_count)]
+        enough = sum(areas[i] for i in others) > LEAST_SHARE * sum(areas)
         chosen = others if enough else ground
     else:
         chosen = sorted({int(face) - 1 for face in faces})
@@ -86,15 +99,36 @@ def datum(result, faces=None, context=None):
         "points": np.concatenate(points),
         "normals": np.concatenate(normals),
         "spacing": spacing,
+        "whole": _whole(shape, context),
+        "ground": np.array(result.field.points),
         "faces": [face + 1 for face in chosen],
         "predicted": bool(predicted),
     }
 
 
-def align(scan, datum, start=None, fixed=(), max_distance_mm=None, share=SHARE):
+def _whole(shape: core.Shape, context: Context) -> Floats | None:
+    """(n, 3) points of all faces, by which sizes are compared; None where the design cannot be sampled."""
+    area = sum(shape.face_area(face) for face in range(shape.face_count))
+    try:
+        return np.array(
+            core.sample_faces(shape, [], math.sqrt(area / SIZE_SAMPLES), context=context)[0].points
+        )
+    except InputError:
+        return None
+
+
+def align(
+    scan: Scan,
+    datum: Json,
+    start: Start | None = None,
+    fixed: Collection[str] = (),
+    max_distance_mm: float | None = None,
+    share: float = SHARE,
+) -> dict[str, Any]:
     """Where the scan lies: dict(work_from_scan (4, 4), rms_mm, used_share, iterations, converged,
     sd (6,) mm and rad, undetermined, warnings; placements, apart_mm, apart_deg: of those that starts
-    around it lead to and that fit as well; trusted: nothing speaks against it).
+    around it lead to and that fit as well; trusted: nothing speaks against it; turned: it fits only with its
+    triangles turned, as ``scan.turned()`` has them).
 
     scan: ``scan_file.Scan``; datum: as ``datum`` gives it, or a dict of points, normals, spacing.
     start: work_from_scan (4, 4); "principal": by the principal axes of both, all their directions
@@ -120,42 +154,70 @@ def align(scan, datum, start=None, fixed=(), max_distance_mm=None, share=SHARE):
             "scan: the greatest distance must be above 0 mm, the share in (0, 1]",
         )
 
-    taken, upwards = scan.spread()
-
-    def register(matrix, distance, points=scan_file.SPREAD, rounds=100, share=share):
-        return module.register_scan(
-            taken,
-            upwards,
-            datum["points"],
-            datum["normals"],
-            datum["spacing"],
-            np.asarray(matrix, dtype=float),
-            distance,
-            share,
-            [name in fixed for name in FREEDOMS],
-            rounds,
-            points,
-        )
-
-    across = float(np.linalg.norm(np.ptp(scan.points, axis=0)))
-    if across < LEAST_SIZE * size:
+    if isinstance(start, str) and start != "principal":
         raise InputError(
-            "scan.size",
-            "scan: it is {across:.3g} mm across, the design {size:.3g} mm; look at its unit",
-            across=across,
-            size=size,
+            "scan.no_such_start",
+            "scan: there is no start '{start}'; give 'principal' or a matrix",
+            start=start,
         )
-    warnings = []
-    if isinstance(start, str):
-        if start != "principal":
-            raise InputError(
-                "scan.no_such_start",
-                "scan: there is no start '{start}'; give 'principal' or a matrix",
-                start=start,
+    given = None
+    if not isinstance(start, str):
+        given = np.eye(4) if start is None else scan_start.rigid(start, "scan: the start")
+
+    def registering(one: Scan) -> Callable[..., dict[str, Any]]:
+        """How a Scan is registered."""
+        taken, upwards = one.spread()
+
+        def register(
+            matrix: Floats,
+            distance: float,
+            points: int = scan_file.SPREAD,
+            rounds: int = 100,
+            share: float = share,
+        ) -> dict[str, Any]:
+            return module.register_scan(
+                taken,
+                upwards,
+                datum["points"],
+                datum["normals"],
+                datum["spacing"],
+                np.asarray(matrix, dtype=float),
+                distance,
+                share,
+                [name in fixed for name in FREEDOMS],
+                rounds,
+                points,
             )
-        start = scan_start.by_principal_axes(taken, datum, register, size, warnings)
-    matrix = np.eye(4) if start is None else scan_start.rigid(start, "scan: the start")
-    found = register(matrix, reach)
+
+        return register
+
+    def begin(one: Scan, told: Facts) -> Floats:
+        """Where a Scan starts."""
+        if given is not None:
+            return given
+        taken, _ = one.spread()
+        return scan_start.by_principal_axes(taken, datum, registering(one), size, told)
+
+    def fitted(one: Scan) -> dict[str, Any] | None:
+        """About how a Scan fits; None where nothing of it is near."""
+        try:
+            return registering(one)(begin(one, []), reach, trust.POINTS, trust.ROUNDS)
+        except InputError:
+            return None
+
+    warnings = [*scan.warnings, *sizes.check(scan, datum, fitted)]
+    odd = len(warnings) > len(scan.warnings)
+    turned = sizes.is_turned(scan, fitted)
+    if turned:
+        scan = scan.turned()
+        warnings.append(
+            core.Fact(
+                "scan.turned",
+                "the scan's triangles look into the part: they are taken the other way round",
+            )
+        )
+    register = registering(scan)
+    found = register(begin(scan, warnings), reach)
     motions = [scan_start.motion_words(one) for one in found["undetermined"]]
     radius = float(np.sqrt(((datum["points"] - found["centre"]) ** 2).sum(axis=1).mean()))
     if motions:
@@ -208,13 +270,16 @@ def align(scan, datum, start=None, fixed=(), max_distance_mm=None, share=SHARE):
         "placements": around["placements"],
         "apart_mm": around["apart_mm"],
         "apart_deg": around["apart_deg"],
-        "trusted": bool(found["converged"]) and not motions and not around["warnings"],
+        "trusted": bool(found["converged"]) and not (motions or around["warnings"] or odd),
+        "turned": turned,
         "undetermined": motions,
         "warnings": warnings,
     }
 
 
-def measure(field, scan, work_from_scan, search_mm=None):
+def measure(
+    field: core.HeightField, scan: Scan, work_from_scan: Floats, search_mm: float | None = None
+) -> Floats:
     """(n,) height of the scan over each sample of a core.HeightField, mm along its normal; NaN where
     the scan has nothing within ``search_mm`` of the design (default: the greatest height and stock,
     and 1 mm). A mesh is met by the normal's ray (not where it only grazes the part's next face), a cloud
@@ -244,7 +309,9 @@ def measure(field, scan, work_from_scan, search_mm=None):
     return np.where(missed, math.nan, target.height)
 
 
-def statistics(field, measured, tolerance):
+def statistics(
+    field: core.HeightField, measured: Floats, tolerance: Sequence[float]
+) -> dict[str, Any]:
     """Area-weighted figures of a measurement and of its difference from the prediction, mm."""
     known = np.isfinite(measured) & ((np.asarray(field.flags) & core.MISSED) == 0)
     if not known.any():
@@ -255,7 +322,7 @@ def statistics(field, measured, tolerance):
     weight = area[known] / area[known].sum()
     lower, upper = tolerance
 
-    def figures(values):
+    def figures(values: Floats) -> dict[str, float]:
         order = np.argsort(values)
         share = np.cumsum(weight[order])
         mean = float(weight @ values)
@@ -267,7 +334,9 @@ def statistics(field, measured, tolerance):
             "sd": math.sqrt(max(0.0, float(weight @ (values - mean) ** 2))),
         }
         for name, part in (("p05", 0.05), ("p50", 0.5), ("p95", 0.95)):
-            told[name] = float(values[order][min(np.searchsorted(share, part), len(order) - 1)])
+            told[name] = float(
+                values[order][min(int(np.searchsorted(share, part)), len(order) - 1)]
+            )
         return told
 
     found = measured[known]
@@ -285,19 +354,19 @@ def statistics(field, measured, tolerance):
 
 
 def compare(
-    result,
-    path,
-    unit_mm=1.0,
-    start=None,
-    pairs=None,
-    datum_faces=None,
-    fixed=(),
-    max_distance_mm=None,
-    share=SHARE,
-    search_mm=None,
-    aligned=False,
-    context=None,
-):
+    result: Ground,
+    path: Path | str,
+    unit_mm: float = 1.0,
+    start: Start | None = None,
+    pairs: ArrayLike | None = None,
+    datum_faces: Iterable[int] | None = None,
+    fixed: Collection[str] = (),
+    max_distance_mm: float | None = None,
+    share: float = SHARE,
+    search_mm: float | None = None,
+    aligned: bool = False,
+    context: Context = None,
+) -> dict[str, Any]:
     """Reads a scan's file, aligns it (``aligned``: it lies where the design does already), measures
     it at each sample and puts the heights into ``result.field.measured``.
 
@@ -306,7 +375,11 @@ def compare(
     while the design is read; the result is then as it was.
     """
     scan = scan_file.read(path, unit_mm)
-    figures = {"file": str(path), "unit_mm": float(unit_mm), "points": len(scan.points)}
+    figures: dict[str, Any] = {
+        "file": str(path),
+        "unit_mm": float(scan.unit_mm),
+        "points": len(scan.points),
+    }
     figures["kind"] = "cloud" if scan.triangles is None else "mesh"
     if aligned:
         matrix, found = np.eye(4), None
@@ -317,16 +390,17 @@ def compare(
                 raise InputError(
                     "scan.pairs_and_start", "scan: give pairs of points or a start, not both"
                 )
-            start, figures["pairs_rms_mm"] = scan_start.by_pairs(pairs, unit_mm)
+            start, figures["pairs_rms_mm"] = scan_start.by_pairs(pairs, scan.unit_mm)
         found = align(scan, surface, start, fixed, max_distance_mm, share)
         matrix = found["work_from_scan"]
+        scan = scan.turned() if found["turned"] else scan
         figures["datum_faces"] = face_runs(surface["faces"])
         figures["datum_predicted"] = surface["predicted"]
     measured = measure(result.field, scan, matrix, search_mm)
     tolerance = result.job["inspection"]["tolerance_mm"]
     figures.update(statistics(result.field, measured, tolerance))
     figures["alignment"] = None if found is None else _plain(found)
-    figures["warnings"] = [] if found is None else found["warnings"]
+    figures["warnings"] = scan.warnings if found is None else found["warnings"]
     if found is not None:
         poor = trust.poor_fit(found["rms_mm"], tolerance)
         figures["warnings"] = poor + figures["warnings"]
@@ -335,9 +409,9 @@ def compare(
     return figures
 
 
-def face_runs(numbers):
+def face_runs(numbers: Iterable[int]) -> list[int | list[int]]:
     """[1, [3, 7]] of [1, 3, 4, 5, 6, 7]: a facetted part has thousands."""
-    runs = []
+    runs: list[list[int]] = []
     for number in sorted(numbers):
         if runs and runs[-1][1] == number - 1:
             runs[-1][1] = number
@@ -346,7 +420,7 @@ def face_runs(numbers):
     return [first if first == last else [first, last] for first, last in runs]
 
 
-def write(result, figures):
+def write(result: Kept, figures: Json) -> None:
     """Keeps a comparison in the folder that the result was read from: heightfield.h5 (``measured_mm``)
     and scan.json, both or none. Raises InputError.
     """
@@ -354,7 +428,7 @@ def write(result, figures):
     result.update(measured=True, others={"scan.json": json_bytes({**figures, **run})})
 
 
-def _plain(found):
+def _plain(found: Json) -> dict[str, Any]:
     """An alignment as JSON has it: infinite standard deviations are None."""
     plain = {name: value for name, value in found.items() if name != "warnings"}
     plain["work_from_scan"] = found["work_from_scan"].tolist()

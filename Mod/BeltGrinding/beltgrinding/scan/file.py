@@ -1,11 +1,17 @@
 """Reads a scan's file: a triangle mesh, or a cloud of points."""
 
+from __future__ import annotations
+
 import math
 import sys
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from ..base.kinds import Array, Floats, known
 from ..base.regular_files import open_regular, read_regular
 from ..engine import InputError, core
 
@@ -16,14 +22,30 @@ MOST_BYTES = 4 << 30  # of a text: more is no scan, or not one for this memory
 
 class Scan:
     """``points`` (n, 3) mm in the scan's frame; ``triangles`` (m, 3) counter-clockwise seen from
-    outside, or None for a cloud.
+    outside, or None for a cloud; ``unit_mm``: mm of the file's 1; ``warnings``: Facts of its file.
     """
 
-    def __init__(self, points, triangles=None):
+    def __init__(
+        self,
+        points: ArrayLike,
+        triangles: Array | None = None,
+        unit_mm: float = 1.0,
+        warnings: Iterable[core.Fact] = (),
+    ) -> None:
         self.points = np.ascontiguousarray(points, dtype=float)
         self.triangles = triangles
+        self.unit_mm = unit_mm
+        self.warnings = list(warnings)
 
-    def spread(self, count=SPREAD):
+    def turned(self) -> Scan:
+        """The same with its other side outside."""
+        return Scan(self.points, known(self.triangles)[:, [0, 2, 1]], self.unit_mm, self.warnings)
+
+    def scaled(self, factor: float) -> Scan:
+        """The same so many times larger."""
+        return Scan(self.points * factor, self.triangles, self.unit_mm * factor)
+
+    def spread(self, count: int = SPREAD) -> tuple[Floats, Floats]:
         """(points (k, 3), outward normals (k, 3) or (0, 3)) evenly on the surface: a mesh's vertices
         may lie anyhow. The same at every call.
         """
@@ -42,8 +64,8 @@ class Scan:
         return a + u * (b - a) + v * (c - a), twice[chosen] / size[chosen, None]
 
 
-def read(path, unit_mm=1.0):
-    """The ``Scan`` in a file; ``unit_mm``: mm of the file's 1. Raises InputError naming the file."""
+def read(path: Path | str, unit_mm: float = 1.0) -> Scan:
+    """The ``Scan`` in a file; ``unit_mm``: mm of the file's 1, 1: also what a 3MF says. Raises InputError naming the file."""
     path = Path(path)
     if not (isinstance(unit_mm, (int, float)) and unit_mm > 0 and math.isfinite(unit_mm)):
         raise InputError(
@@ -53,9 +75,9 @@ def read(path, unit_mm=1.0):
         )
     open_regular(path, sys.maxsize).close()
     if path.suffix.lower() in TEXT_SUFFIXES:
-        return Scan(read_text(path) * unit_mm)
+        return Scan(read_text(path) * unit_mm, None, unit_mm)
     if path.suffix.lower() == ".ply":
-        points, triangles = core.read_ply(str(path))
+        points, triangles, turned = core.read_ply(str(path))
         points = np.asarray(points) * unit_mm
         if not len(points):
             raise InputError("scan.no_point", "{file}: the scan has no point", file=path)
@@ -67,20 +89,35 @@ def read(path, unit_mm=1.0):
                 file=path,
                 vertex=row,
             )
-        return Scan(points, np.asarray(triangles) if len(triangles) else None)
+        told = []
+        if turned:
+            told.append(
+                core.Fact(
+                    "mesh.turned",
+                    "{file}: {count} closed pieces of the mesh are inside out; they are turned",
+                    file=str(path),
+                    count=turned,
+                )
+            )
+        return Scan(points, np.asarray(triangles) if len(triangles) else None, unit_mm, told)
     if path.suffix.lower() == ".obj" and not _has_faces(path):
-        return Scan(_obj_points(path) * unit_mm)
-    mesh = core.read_mesh(str(path), float(unit_mm))
-    return Scan(np.asarray(mesh.vertices), np.asarray(mesh.triangles))
+        return Scan(_obj_points(path) * unit_mm, None, unit_mm)
+    report: dict[str, Any] = {}
+    mesh = core.read_mesh(str(path), float(unit_mm), report=report)
+    told = [
+        fact for fact in report["warnings"] if fact.code != "mesh.size"
+    ]  # the design tells better
+    return Scan(np.asarray(mesh.vertices), np.asarray(mesh.triangles), report["unit_mm"], told)
 
 
-def read_text(path):
+def read_text(path: Path | str) -> Floats:
     """(n, 3) of a text's first three columns; blanks, tabs, commas or semicolons between them; lines
     that begin with # or //, and one line of headings or a count before the first point, are passed
     over.
     """
     text = read_regular(path, MOST_BYTES).decode("latin-1")
-    rows, headings = [], 0
+    rows: list[tuple[float, float, float]] = []
+    headings = 0
     for number, line in enumerate(text.splitlines(), 1):
         line = line.strip()
         if not line or line.startswith(("#", "//")):
@@ -113,7 +150,7 @@ def read_text(path):
     return np.array(rows)
 
 
-def _words(line):
+def _words(line: str) -> list[str]:
     """The columns of a line. ValueError where a comma may be a decimal sign."""
     if ";" in line:
         words = [word.strip() for word in line.split(";")]
@@ -127,12 +164,12 @@ def _words(line):
     return words
 
 
-def _has_faces(path):
+def _has_faces(path: Path | str) -> bool:
     with open(path, "rb") as file:
         return any(line.lstrip().startswith(b"f ") for line in file)
 
 
-def _obj_points(path):
+def _obj_points(path: Path | str) -> Floats:
     rows = []
     with open(path, encoding="latin-1") as file:
         for number, line in enumerate(file, 1):

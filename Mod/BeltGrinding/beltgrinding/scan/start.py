@@ -1,13 +1,20 @@
 """Where the alignment of a scan starts, and in which words its freedoms are told."""
 
+from __future__ import annotations
+
 import itertools
 import math
+from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..base.files import cannot_be_read
+from ..base.kinds import Facts, Floats, Json
 from ..base.regular_files import read_regular
 from ..engine import InputError, core
+from . import sizes as scan_sizes
 
 MOST_BYTES = 100_000_000  # of a matrix or of pairs
 
@@ -16,10 +23,9 @@ TRY_POINTS = 3_000  # of the scan, for one of the directions of its principal ax
 TRY_ROUNDS = 25
 AMBIGUOUS = 1.3  # times the best residual: another direction that fits nearly as well
 OTHER_WAY = math.radians(10.0)  # between two directions that are not the same
-ALIKE_SHARE = 0.8  # of the used points of the best
 
 
-def rigid(matrix, name):
+def rigid(matrix: ArrayLike, name: str) -> Floats:
     """A 4 x 4 (or 3 x 4) rigid transform as an array, its rotation made exactly orthonormal. Raises
     InputError for one that is none by more than rounding.
     """
@@ -44,12 +50,12 @@ def rigid(matrix, name):
     return result
 
 
-def moved(points, matrix):
+def moved(points: Floats, matrix: Floats) -> Floats:
     """(n, 3) points by a 4 x 4 transform."""
     return points @ matrix[:3, :3].T + matrix[:3, 3]
 
 
-def by_pairs(pairs, unit_mm=1.0):
+def by_pairs(pairs: ArrayLike, unit_mm: float = 1.0) -> tuple[Floats, float]:
     """(work_from_scan, rms in mm) from three or more pairs of places, (k, 2, 3): on the scan, in its
     unit, and on the design, mm. Least squares by singular values (Umeyama, IEEE Trans. PAMI 13,
     1991). Raises InputError for fewer, or for places on one line.
@@ -65,6 +71,7 @@ def by_pairs(pairs, unit_mm=1.0):
     if not np.isfinite(given).all():
         raise InputError("scan.pairs_not_finite", "scan: the pairs are not finite")
     scan, work = given[:, 0] * unit_mm, given[:, 1]
+    scan_sizes.by_pairs(scan, work, unit_mm)
     centres = scan.mean(axis=0), work.mean(axis=0)
     u, sizes, v = np.linalg.svd((work - centres[1]).T @ (scan - centres[0]))
     if sizes[1] < 1e-9 * max(sizes[0], 1e-300):
@@ -79,7 +86,7 @@ def by_pairs(pairs, unit_mm=1.0):
     return matrix, math.sqrt(float((off**2).sum(axis=1).mean()))
 
 
-def principal_axes(points):
+def principal_axes(points: Floats) -> tuple[Floats, Floats]:
     """(centre, axes as columns of a rotation) by falling spread."""
     centre = points.mean(axis=0)
     _, vectors = np.linalg.eigh(np.cov((points - centre).T))
@@ -88,7 +95,9 @@ def principal_axes(points):
     return centre, axes
 
 
-def by_principal_axes(points, datum, register, size, warnings):
+def by_principal_axes(
+    points: Floats, datum: Json, register: Callable[..., Json], size: float, warnings: Facts
+) -> Floats:
     """work_from_scan for the best of the 24 ways in which the principal axes can lie on each other,
     each aligned coarsely; a warning where another fits nearly as well.
     """
@@ -134,7 +143,7 @@ def by_principal_axes(points, datum, register, size, warnings):
     return np.asarray(best["work_from_scan"])
 
 
-def motion_words(motion):
+def motion_words(motion: Floats) -> core.Fact | str:
     """A unit motion (6,) in words, as a fact: "shift along (1.00, 0.00, 0.00)"."""
     shift, turn = np.asarray(motion[:3]), np.asarray(motion[3:])
     told = []
@@ -152,7 +161,7 @@ def motion_words(motion):
     return core.Fact("scan.shift_and_turn", "{shift} with {turn}", shift=told[0], turn=told[1])
 
 
-def face_numbers(text):
+def face_numbers(text: str) -> list[int]:
     """[1, 2] of "1,2". Raises InputError."""
     try:
         return [int(word) for word in text.split(",") if word.strip()]
@@ -162,17 +171,17 @@ def face_numbers(text):
         ) from None
 
 
-def read_matrix(path):
+def read_matrix(path: Path | str | None) -> Floats | None:
     """A rigid transform from a text of 3 or 4 rows of 4 numbers; # begins a comment. None for None."""
     return None if path is None else rigid(_numbers(path, 4), f"{path}")
 
 
-def read_pairs(path):
+def read_pairs(path: Path | str | None) -> Floats | None:
     """(k, 2, 3) from a text of rows x, y, z (scan), x, y, z (design). None for None."""
     return None if path is None else np.reshape(_numbers(path, 6), (-1, 2, 3))
 
 
-def _numbers(path, columns):
+def _numbers(path: Path | str, columns: int) -> list[list[float]]:
     """Rows of numbers with commas, semicolons or blanks between them. Raises InputError."""
     try:
         lines = read_regular(path, MOST_BYTES).decode("utf-8-sig").splitlines()

@@ -1,25 +1,41 @@
 """A scan of the raw part, laid on the design, as the stock of a job: this very casting."""
 
-from types import SimpleNamespace
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..base import frames
+from ..base.kinds import Context, Json
 from ..engine import InputError, core
 from ..job import workpiece
 from . import comparison, file as scan_file, start as scan_start, trust
 
+if TYPE_CHECKING:
+    from .kinds import Start
+
+
+class _Raw(NamedTuple):
+    """A job whose part is not ground."""
+
+    job: Json
+    field: core.HeightField
+
 
 def as_stock(
-    job,
-    path,
-    unit_mm=1.0,
-    start=None,
-    pairs=None,
-    datum_faces=None,
-    aligned=False,
-    context=None,
-):
+    job: Json,
+    path: Path | str,
+    unit_mm: float = 1.0,
+    start: Start | None = None,
+    pairs: ArrayLike | None = None,
+    datum_faces: Iterable[int] | None = None,
+    aligned: bool = False,
+    context: Context = None,
+) -> tuple[dict[str, Any], dict[str, Any] | None]:
     """(copy of a validated job whose stock is the scan in a mesh file, figures of the alignment or None). It is laid on
     ``datum_faces`` (numbers from 1; None: all faces that are not ground), unless it is ``aligned`` already; start and
     pairs as ``comparison.compare`` takes them. The figures are those of ``comparison.align``.
@@ -37,7 +53,7 @@ def as_stock(
     if not aligned:
         shape = workpiece.read_design(job["design"], context)
         field = workpiece.make_field(job, shape, [], context)
-        surface = comparison.datum(SimpleNamespace(job=job, field=field), datum_faces, context)
+        surface = comparison.datum(_Raw(job, field), datum_faces, context)
         if surface["predicted"]:
             raise InputError(
                 "scan.stock_no_datum",
@@ -50,8 +66,14 @@ def as_stock(
                 raise InputError(
                     "scan.pairs_and_start", "scan: give pairs of points or a start, not both"
                 )
-            start, _ = scan_start.by_pairs(pairs, unit_mm)
+            start, _ = scan_start.by_pairs(pairs, scan.unit_mm)
         found = comparison.align(scan, surface, start)
+        if found["turned"]:
+            raise InputError(
+                "scan.stock_turned",
+                "{file}: its triangles look into the part; turn them (reverse the normals) and export it again",
+                file=path,
+            )
         poor = trust.poor_fit(found["rms_mm"], job["inspection"]["tolerance_mm"])
         found["warnings"] = poor + found["warnings"]
         found["trusted"] = found["trusted"] and not poor

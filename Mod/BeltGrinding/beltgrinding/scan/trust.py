@@ -4,12 +4,20 @@ Iterative closest points end in the nearest valley. That it converged, and the s
 step, say nothing of other valleys beside it.
 """
 
+from __future__ import annotations
+
 import math
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..base.kinds import Facts, Floats, Json
 from ..engine import InputError, core
 from . import start as scan_start
+
+if TYPE_CHECKING:
+    from .kinds import Register
 
 # Places around, as shares of the datum's radius and as turns: all freedoms at once near it, and each by itself
 # farther away, since far from it in all of them nothing ends where it should.
@@ -33,7 +41,9 @@ LEAST_RMS = 1e-5  # mm: what is below is rounding
 POOR = 3.0  # bands of the tolerance: a datum that the scan is farther from is not the scan's
 
 
-def look_around(found, register, datum, fixed):
+def look_around(
+    found: Json, register: Register, datum: Json, fixed: Iterable[bool]
+) -> dict[str, Any]:
     """What other starts say of an alignment: dict(placements: of those that fit as well or better, itself
     among them; apart_mm, apart_deg: how far these lie from it; sd: {index of a freedom: mm or rad over
     them}, warnings).
@@ -100,7 +110,7 @@ def look_around(found, register, datum, fixed):
     }
 
 
-def _starts(radius, free):
+def _starts(radius: float, free: Floats) -> list[Floats]:
     """Motions (6,) in mm and rad that lead to the places around; ``free``: 0 for a freedom that is fixed."""
     near = np.array([NEAR[0] * radius] * 3 + [NEAR[1]] * 3) * free
     far = np.array([FAR[0] * radius] * 3 + [FAR[1]] * 3) * free
@@ -108,7 +118,7 @@ def _starts(radius, free):
     return [*(near * np.array(WAYS)), *single[np.abs(single).sum(axis=1) > 0.0]]
 
 
-def poor_fit(rms_mm, tolerance):
+def poor_fit(rms_mm: float, tolerance: Sequence[float]) -> Facts:
     """[Fact] where the datum's residual is many times a tolerance (lower, upper) in mm, else []."""
     band = tolerance[1] - tolerance[0]
     if not (band > 0 and rms_mm > POOR * band):
@@ -124,7 +134,7 @@ def poor_fit(rms_mm, tolerance):
     ]
 
 
-def moved_about(matrix, centre, motion):
+def moved_about(matrix: Floats, centre: Floats, motion: Floats) -> Floats:
     """A transform (4, 4) after a small motion (6,): shift in mm, and a turn in rad about ``centre``."""
     turn = rotation(np.asarray(motion[3:], dtype=float))
     result = np.eye(4)
@@ -133,7 +143,7 @@ def moved_about(matrix, centre, motion):
     return result
 
 
-def motion_between(one, other, centre):
+def motion_between(one: Floats, other: Floats, centre: Floats) -> Floats:
     """(6,) the motion that ``moved_about`` needs from one transform to the other."""
     one, other = np.asarray(one), np.asarray(other)
     turn = other[:3, :3] @ one[:3, :3].T
@@ -141,7 +151,7 @@ def motion_between(one, other, centre):
     return np.concatenate([shift, rotation_vector(turn)])
 
 
-def rotation(vector):
+def rotation(vector: Floats) -> Floats:
     """The rotation (3, 3) by a vector of its axis times its angle in rad."""
     angle = float(np.linalg.norm(vector))
     if angle < 1e-15:
@@ -151,7 +161,7 @@ def rotation(vector):
     return np.eye(3) + math.sin(angle) * k + (1 - math.cos(angle)) * (k @ k)
 
 
-def rotation_vector(turn):
+def rotation_vector(turn: Floats) -> Floats:
     """What ``rotation`` made a rotation of."""
     from ..base.frames import to_quaternions
 
@@ -163,17 +173,17 @@ def rotation_vector(turn):
     return quaternion[1:] / sine * 2.0 * math.atan2(sine, quaternion[0])
 
 
-def _tried(register, matrix):
+def _tried(register: Register, matrix: Floats) -> Json | None:
     try:
         return register(matrix, POINTS, ROUNDS)
     except InputError:  # hardly a point of the scan is near the datum there
         return None
 
 
-def _score(found):
+def _score(found: Json) -> float:
     return max(found["rms"], LEAST_RMS) / max(found["used_share"], 1e-9)
 
 
-def _size(motion, radius):
+def _size(motion: Floats, radius: float) -> float:
     """mm that the datum's points move by, about."""
     return float(np.hypot(np.linalg.norm(motion[:3]), radius * np.linalg.norm(motion[3:])))

@@ -5,32 +5,49 @@ The engine compares the programs, step by step as it sees them (src/simulation, 
 depends on is compared here: the field, the settings and what is to be kept of the run.
 """
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ..base import kept
+from ..base.kinds import Json
 from ..engine import core
+
+if TYPE_CHECKING:
+    from ..job.engine_input import EngineInput
 
 STAGE = "grinding"
 SHARE = 0.5  # of the most that one kept value may take: the old states and the new ones together take that
-OF_FIELD = ("points", "normals", "rays", "areas", "stock_height", "height", "faces", "flags")
-OF_FIELD += ("triangles",)  # which say what a sample on a border stands for
+OF_FIELD = ("points", "normals", "rays", "areas", "stock_height", "height", "faces", "flags") + (
+    "triangles",  # which say what a sample on a border stands for
+)
 
 
 class RunCheckpoints:
     """Those of one run, program by program."""
 
-    def __init__(self, field, settings, recorded, programs, wanted=True):
+    def __init__(
+        self,
+        field: core.HeightField,
+        settings: EngineInput,
+        recorded: bool,
+        programs: int,
+        wanted: bool = True,
+    ) -> None:
         """``settings``: what core.simulate takes for the first program, plain data; ``recorded``: the run has a
         recording; ``programs``: how many there are; ``wanted``: else none are kept."""
         self._most = SHARE * kept.largest() / programs if wanted else 0.0  # bytes of a program's
-        self._programs, self._resumed, self._same = [], 0, True
+        self._programs: list[core.Checkpoints] = []
+        self._resumed, self._same = 0, True
         if self._most < 1.0:
             return
         arrays = [np.asarray(getattr(field, name)) for name in OF_FIELD]
         self._key = kept.digest(arrays, field.spacing, field.depth, settings, recorded)
         self._before = kept.find(STAGE, self._key) or []
 
-    def next(self):
+    def next(self) -> core.Checkpoints | None:
         """core.Checkpoints for the next program; None where nothing is to be kept."""
         if self._most < 1.0:
             return None
@@ -41,12 +58,12 @@ class RunCheckpoints:
         self._programs.append(self._before[at].within(most) if same else core.Checkpoints(most))
         return self._programs[-1]
 
-    def ended(self, result):
+    def ended(self, result: Json) -> None:
         """``result``: that of the program, of core.simulate."""
         self._resumed += result["resumed"]
         self._same = self._same and result["unchanged"]
 
-    def keep(self):
+    def keep(self) -> None:
         """Keeps them for the next run, those of a program that was cancelled on its way as well."""
         if self._programs:
             size = sum(one.bytes for one in self._programs)

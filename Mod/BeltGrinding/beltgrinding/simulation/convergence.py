@@ -7,18 +7,26 @@ for estimation and reporting of uncertainty due to discretization in CFD applica
 Engineering 130, 2008). Where the three values do not converge monotonically, their range.
 """
 
+from __future__ import annotations
+
 import copy
 import math
 import time
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..base.kinds import Context, Facts, Json
 from ..base.messages import fact_data
 from ..engine import InputError, core
 from ..job import resolution, spacing
 from ..job.workpiece import check_faces, read_design
 from . import run as runs
 from .convergence_record import BAND_SHARE, LEVELS, assessed, digest
+
+if TYPE_CHECKING:
+    from .result import Result
 
 RATIO = 2.0  # between the levels
 SETTINGS = {  # what is refined: name, keys of the job
@@ -38,7 +46,7 @@ SAFETY_TWO = 3.0  # on two levels, the order taken as 1 (Roache)
 ROUNDING = 1e-9  # relative: differences below it are none
 
 
-def converge(job, context=None):
+def converge(job: Json, context: Context = None) -> Result:
     """Runs a validated job at twice, once and half its sampling spacing, steps and contact cells.
 
     Returns (the job's ``Result``, whose ``convergence`` is the dict that convergence.json holds: see
@@ -57,26 +65,32 @@ def converge(job, context=None):
         shape = read_design(job["design"], context.part(0.0, 0.0))
         check_faces(job, shape)
         job, _ = spacing.settled(job, shape, [], context.part(0.0, 0.0))
-    whole, so_far, levels, result, notes = sum(COST.values()) + 2.0, 0.0, {}, None, []
+    whole, so_far = sum(COST.values()) + 2.0, 0.0
+    levels: dict[str, dict[str, Any] | None] = {}
+    result: Result | None = None
+    notes: Facts = []
     for level in ("given", "coarse", "fine"):
         end = so_far + COST[level]
         part = context.part(so_far / whole, end / whole)
         start = time.perf_counter()
         try:
-            found = runs.run(scaled(job, level), part, resume=level == "given")
+            found: Result | None = runs.run(scaled(job, level), part, resume=level == "given")
         except (InputError, MemoryError) as error:
             if level == "given":
                 raise
+            reason: object = error
             if isinstance(error, MemoryError):
-                error = core.Fact("simulation.out_of_memory", "out of memory")
+                reason = core.Fact("simulation.out_of_memory", "out of memory")
             code, text = FAILED[level]
-            notes.append(core.Fact(code, text, reason=error))
+            notes.append(core.Fact(code, text, reason=reason))
             levels[level] = None
         else:
+            assert found is not None
             levels[level] = _level(found, time.perf_counter() - start)
             result = found if level == "given" else result
         so_far = end
         found = None  # a fine field is large
+    assert result is not None
     answer = {
         "job_sha256": digest(job),
         "ratio": RATIO,
@@ -98,24 +112,25 @@ def converge(job, context=None):
     return result
 
 
-def scaled(job, level, only=None):
+def scaled(job: Json, level: str, only: str | None = None) -> dict[str, Any]:
     """A copy of a job at a level; ``only``: the one of ``SETTINGS`` that is changed."""
     factor = RATIO ** (1 - LEVELS.index(level))
-    job = copy.deepcopy(job)
+    changed: dict[str, Any] = copy.deepcopy(dict(job))
     for name, keys in SETTINGS.items():
         if only is None or name == only:
             for part, key in keys:
-                job[part][key] *= factor
+                changed[part][key] *= factor
     if only in (None, "spacing"):  # chords bulge by the square of their length
-        job["sampling"]["edge_spacing_mm"] *= factor
-        job["sampling"]["precision_mm"] *= factor**2
-    return job
+        changed["sampling"]["edge_spacing_mm"] *= factor
+        changed["sampling"]["precision_mm"] *= factor**2
+    return changed
 
 
-def _level(result, seconds):
+def _level(result: Result, seconds: float) -> dict[str, Any]:
     """The figures of a run that are compared: name, unit, value."""
     summary = result.summary
-    figures = {("removed_volume", "mm3", None): summary["removed_volume_mm3"]}
+    figures: dict[tuple[str, str, int | None], float] = {}
+    figures[("removed_volume", "mm3", None)] = summary["removed_volume_mm3"]
     for name, value in summary["deviation_mm"].items():
         figures[(name, "mm", None)] = value
     figures[("in_tolerance", "share", None)] = summary["in_tolerance_area_share"]
@@ -134,7 +149,7 @@ def _level(result, seconds):
     }
 
 
-def _settings(job, level, run):
+def _settings(job: Json, level: str, run: Json | None) -> dict[str, Any] | None:
     """A level's settings and size; None where it could not be run."""
     if run is None:
         return None
@@ -147,7 +162,7 @@ def _settings(job, level, run):
     }
 
 
-def _quantities(levels):
+def _quantities(levels: Mapping[str, Any]) -> list[dict[str, Any]]:
     found = []
     for key in levels["given"]["figures"]:
         name, unit, face = key
@@ -157,13 +172,13 @@ def _quantities(levels):
     return found
 
 
-def estimate(coarse, given, fine):
+def estimate(coarse: float | None, given: float, fine: float | None) -> dict[str, Any]:
     """dict(behaviour, order, error) of a quantity by its values at three levels, None where a level
     has none. ``error``: estimate of |given - exact| in the quantity's unit, on the safe side.
     """
-    if fine is None and coarse is None:
-        return {"behaviour": "unknown", "order": None, "error": None}
     if coarse is None:  # f(h) - f(0) = 2 (f(h) - f(h/2)) at order 1
+        if fine is None:
+            return {"behaviour": "unknown", "order": None, "error": None}
         error = SAFETY_TWO * RATIO / (RATIO - 1.0) * abs(fine - given)
         return {"behaviour": "two levels", "order": None, "error": error}
     if fine is None:
@@ -183,11 +198,13 @@ def estimate(coarse, given, fine):
     return {"behaviour": "monotonic", "order": order, "error": error}
 
 
-def _blame(job, given, context, notes):
+def _blame(
+    job: Json, given: Any, context: core.RunContext, notes: Facts
+) -> dict[str, float | None]:
     """How far each setting moves the deviations when it alone is coarsened: {name: mm}, the greatest
     change among the figures in mm.
     """
-    found = {}
+    found: dict[str, float | None] = {}
     for k, name in enumerate(SETTINGS):
         part = context.part(k / len(SETTINGS), (k + 1) / len(SETTINGS))
         try:

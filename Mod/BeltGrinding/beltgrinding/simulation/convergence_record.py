@@ -1,9 +1,14 @@
 """The answer whether a job's settings are fine enough: as kept, and judged by its tolerances."""
 
+from __future__ import annotations
+
 import hashlib
 import math
+from pathlib import Path
+from typing import Any
 
 from ..base import schemas
+from ..base.kinds import Json
 from ..job import inputs
 from ..job.tolerances import narrowest_band
 
@@ -12,7 +17,7 @@ BAND_SHARE = 0.1  # of the tolerance band: errors below it do not move a verdict
 SHARE_LIMIT = 0.01  # of the area, and of the removed volume
 
 
-def assessed(convergence, inspection):
+def assessed(convergence: Json, inspection: Json) -> dict[str, Any]:
     """A copy of an answer, assessed by the tolerances of a job's ``inspection``: the errors hold for any.
     The share in tolerance is left out where it was that of another tolerance.
     """
@@ -33,28 +38,28 @@ def assessed(convergence, inspection):
     }
 
 
-def worst(convergence):
+def worst(convergence: Json) -> Json:
     """The quantity whose error is the largest share of its limit."""
     return max(convergence["quantities"], key=_excess)
 
 
-def _excess(one):
+def _excess(one: Json) -> float:
     if one["error"] is None:
         return math.inf
     return one["error"] / one["limit"] if one["limit"] > 0.0 else (math.inf, 0.0)[one["error"] == 0]
 
 
-def digest(job):
+def digest(job: Json) -> str:
     """SHA-256 of what the heights of a validated job depend on: all but its inspection."""
     job = {key: value for key, value in job.items() if key != "inspection"}
     return hashlib.sha256(inputs.canonical(job)).hexdigest()
 
 
-def read(path, job):
+def read(path: Path, job: Json) -> dict[str, Any] | None:
     """The convergence of a job from a file; None where there is none, or one of another job. Raises
     InputError.
     """
     if not path.is_file():
         return None
-    found = schemas.checked(schemas.read_json(path), schemas.schema("convergence"), str(path))
+    found = schemas.checked_file(path, schemas.schema("convergence"))
     return assessed(found, job["inspection"]) if found["job_sha256"] == digest(job) else None

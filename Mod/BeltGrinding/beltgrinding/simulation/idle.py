@@ -1,18 +1,26 @@
 """Settings with which nothing can be ground: allowed, and hardly meant."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+
 import numpy as np
 
+from ..base.kinds import Facts, Json
 from ..engine import core
 from ..job.poses import program_name
+from ..job.settings import Job
+from ..job.typed import typed
 
 
-def warnings(job, paths):
+def warnings(job: Job | Json, paths: Sequence[core.ToolPath]) -> Facts:
     """Facts, one for each reason that the settings give for grinding nothing. ``paths``: the core.ToolPath
     of each program of the validated job."""
-    machine, law = job["belt_machine"], job["law"]
+    job = typed(job)
+    machine, law = job.belt_machine, job.law
     found = []
-    if law["model"] != "geometric":
-        if law["coefficient_mm2_per_N"] == 0.0:
+    if law.model != "geometric":
+        if law.coefficient_mm2_per_N == 0.0:
             found.append(
                 core.Fact(
                     "idle.coefficient",
@@ -20,7 +28,7 @@ def warnings(job, paths):
                     "2e-4 mm2/N",
                 )
             )
-        if machine["belt_wear"] == 0.0:
+        if machine.belt_wear == 0.0:
             found.append(
                 core.Fact(
                     "idle.belt_wear",
@@ -28,7 +36,7 @@ def warnings(job, paths):
                     "has 1",
                 )
             )
-    if machine["control"] == "force":
+    if machine.control == "force":
         found += [
             core.Fact(
                 "idle.force",
@@ -37,6 +45,6 @@ def warnings(job, paths):
                 program=program_name(job, index),
             )
             for index, path in enumerate(paths)
-            if not np.where(path.forces() < 0.0, machine["force_N"], path.forces()).any()
+            if not np.where(path.forces() < 0.0, machine.force_N, path.forces()).any()
         ]
     return found

@@ -1,21 +1,27 @@
 """What a job gave, and the files that it is kept in."""
 
+from __future__ import annotations
+
 import copy
 import io
 import json
 import time
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any, TypeVar
 
 import numpy as np
 
 from ..base import folders, schemas
 from ..base.cells import numbers
-from ..base.files import cannot_be_read, json_bytes
+from ..base.files import Data, cannot_be_read, in_file, json_bytes
+from ..base.kinds import Array, Floats, Json, known
 from ..cell import events, motions
+from ..cell.motions import Motions
 from ..engine import InputError, core
 from ..inspection import finish_events
 from ..job.tolerances import colour_scale
-from . import convergence_record, result_folder
+from . import convergence_record, last_door, result_folder
 
 # What summary.json has had since belts wear and robots are followed: here nothing of either is known.
 LATER = {
@@ -36,16 +42,25 @@ class Result:
     """
 
     VERDICT = "verdict.json"
-    folder = None  # that ``read`` read
-    bins = None  # the time series of a document's result, as ``reporting.charts.binned`` makes it
-    convergence = None
-    motions = None
-    verdict = None
-    influence = None
-    force_influence = None
-    shifts = None
+    folder: Path | None = None  # that ``read`` read
+    # The time series of a document's result, as ``reporting.charts.binned`` makes it.
+    bins: dict[str, Any] | None = None
+    convergence: dict[str, Any] | None = None
+    motions: Motions | None = None
+    verdict: dict[str, Any] | None = None
+    influence: core.Influence | None = None
+    force_influence: core.Influence | None = None
+    shifts: Floats | None = None
 
-    def __init__(self, job, field, summary, events, steps, recording=None):
+    def __init__(
+        self,
+        job: dict[str, Any],
+        field: core.HeightField,
+        summary: dict[str, Any],
+        events: list[dict[str, Any]],
+        steps: dict[str, Array] | None,
+        recording: core.Recording | None = None,
+    ) -> None:
         self.job = job
         self.field = field
         self.summary = summary
@@ -53,7 +68,9 @@ class Result:
         self.steps = steps
         self.recording = recording
 
-    def write(self, folder, force=False, used=()):
+    def write(
+        self, folder: Path | str, force: bool = False, used: Iterable[Path | str] = ()
+    ) -> None:
         """Writes the files of a result (``result_folder.FILES``) in place of an older one's, all of them
         or none. A file that the run has read, or one of ``used``, is never written over; another's file
         only by ``force``. Raises InputError; the folder is then as it was.
@@ -62,12 +79,12 @@ class Result:
         self.summary["run_id"] = result_folder.run_id(self.summary)
         result_folder.write(folder, self._contents(), self.summary, force, used, begun)
 
-    def _contents(self):
+    def _contents(self) -> dict[str, Data]:
         """By file name, of all but summary.json; what is large is written as it is made."""
         run = self.summary["run_id"]
         lower, upper, limit = colour_scale(self.job)
         scale = (lower, upper, limit)
-        contents = {
+        contents: dict[str, Data] = {
             "deviation.ply": lambda file: core.deviation_ply_into(
                 file, self.field, *scale, True, run
             ),
@@ -84,18 +101,18 @@ class Result:
             contents[self.VERDICT] = self.verdict_bytes()
         return contents
 
-    def _height_field(self, file):
-        self.field.hdf5_into(file, json.dumps({**self.job, **self._run_id()}))
+    def _height_field(self, file: int) -> None:
+        self.field.hdf5_into(file, json.dumps({**self.job, **self._run_id()}, allow_nan=False))
 
-    def _run_id(self):
+    def _run_id(self) -> dict[str, str]:
         """None of an older version's result."""
         return {key: self.summary[key] for key in ("run_id",) if key in self.summary}
 
-    def judged_by(self):
+    def judged_by(self) -> Json:
         """The ``inspection`` whose limits its verdict is by: its job's, or that of another by which it was judged since."""
         return self.summary.get("judged_by") or self.job["inspection"]
 
-    def tell_finish(self, inspection):
+    def tell_finish(self, inspection: Json) -> None:
         """Makes the events of zones' finish anew, by its verdict on the zones of a job's ``inspection``, and keeps by which
         one that is.
         """
@@ -103,27 +120,35 @@ class Result:
         if inspection != self.job["inspection"]:
             self.summary["judged_by"] = inspection
         job = {**self.job, "inspection": inspection}
-        self.events = finish_events.renewed(self.events, job, self.verdict["zones"], self.motions)
+        self.events = finish_events.renewed(
+            self.events, job, known(self.verdict)["zones"], self.motions
+        )
         self.summary["events"] = events.count(self.events)
 
-    def verdict_bytes(self):
+    def verdict_bytes(self) -> bytes:
         """verdict.json"""
-        return json_bytes({**self.verdict, **self._run_id()})
+        return json_bytes({**known(self.verdict), **self._run_id()})
 
-    def update(self, verdict=False, measured=False, others=()):
+    def update(
+        self,
+        verdict: bool = False,
+        measured: bool = False,
+        others: Mapping[str, bytes] | None = None,
+    ) -> None:
         """Writes what was made of a result that was read into its folder: its verdict and events, the heights
         that a scan measured, ``others`` (bytes by file name). Raises InputError.
         """
-        contents = dict(others)
+        contents: dict[str, Data] = dict(others or {})
         if verdict:
+            last_door.check_figures(verdict=self.verdict, events=self.events)
             contents[self.VERDICT] = self.verdict_bytes()
             contents["events.json"] = json_bytes(self.events)
         if measured:
             contents["heightfield.h5"] = self._height_field
-        result_folder.update(self.folder, self.summary, contents)
+        result_folder.update(known(self.folder), self.summary, contents)
 
     @classmethod
-    def read(cls, folder):
+    def read(cls, folder: Path | str) -> Result:
         """The result that ``write`` left in ``folder``. An older version's gets what has come since, by
         its default; its motions and verdict are None. Raises InputError, also where a file is not as it
         was written.
@@ -136,29 +161,36 @@ class Result:
             raise cannot_be_read(error.filename or folder, error) from None
 
     @classmethod
-    def _read(cls, folder):
+    def _read(cls, folder: Path) -> Result:
         summary = result_folder.read_summary(folder)
         result_folder.check_sums(folder, summary)
         found = events.read(folder / "events.json")
         field, attributes = core.HeightField.from_hdf5(str(folder / "heightfield.h5"))
-        try:
-            job = json.loads(attributes)
-            job.pop("run_id", None)
-            job = schemas.filled(job, schemas.schema("job"))
-        except (ValueError, AttributeError, TypeError):
-            raise InputError(
-                "simulation.no_job",
-                "{file}: holds no job; it is not a run's result",
-                file=folder / "heightfield.h5",
-            ) from None
+        job = _job(folder / "heightfield.h5", attributes)
         summary = {**copy.deepcopy(LATER), **summary}
         result = cls(job, field, summary, found, _read_table(folder))
         result.folder = folder
         result.convergence = convergence_record.read(folder / "convergence.json", job)
         result.motions = motions.read(folder / motions.FILE)
         if (folder / cls.VERDICT).exists():
-            result.verdict = schemas.read_json(folder / cls.VERDICT)
+            rules = schemas.schema("verdict")
+            result.verdict = schemas.checked_file(folder / cls.VERDICT, rules)
         return result
+
+
+def _job(path: Path, attributes: str) -> dict[str, Any]:
+    """The job that a height field's file holds. Raises InputError."""
+    try:
+        job = json.loads(attributes)
+        job.pop("run_id", None)
+    except (ValueError, AttributeError, TypeError, RecursionError):
+        raise InputError(
+            "simulation.no_job", "{file}: holds no job; it is not a run's result", file=path
+        ) from None
+    try:
+        return schemas.checked(job, schemas.schema("job"), "job")
+    except InputError as error:
+        raise in_file(error, path) from None
 
 
 STEP_COLUMNS = {
@@ -178,7 +210,7 @@ STEP_COLUMNS = {
 ADDED = {"deepest_approach_mm"}  # since 0.1.0, whose results are read with NaN there
 
 
-def _table(steps):
+def _table(steps: Mapping[str, Array]) -> bytes:
     """One row a step, as CSV; programs and poses count from 0."""
     rows = np.column_stack([steps[name] for name in STEP_COLUMNS])
     text = io.StringIO()
@@ -186,7 +218,7 @@ def _table(steps):
     return text.getvalue().encode()
 
 
-def _read_table(folder):
+def _read_table(folder: Path) -> dict[str, Array] | None:
     """The steps that ``_table`` wrote; None where there are none."""
     path = folder / "steps.csv"
     if not path.is_file():

@@ -1,21 +1,28 @@
 """Runs a job: grinds its field along its programs, and says what came out. No FreeCAD in here."""
 
+from __future__ import annotations
+
 import time
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from ..base import kept
+from ..base import kept, records
+from ..base.kinds import Array, Context, Facts, Floats, Json
 from ..base.messages import fact_data
 from ..cell import collision, events as event_lists, gaps, motions, reach
-from ..cell.tool_path import tool_path
+from ..cell.tool_path import motions as arrays_of, tool_path
 from ..engine import Cancelled, InputError, core
 from ..inspection import verdict as verdicts
-from ..job import inputs, law as laws, resolution, spacing
-from ..job.engine_input import engine_arguments
+from ..job import engine_input, inputs, law as laws, resolution, spacing, usual
 from ..job.law import remaining_cut
 from ..job.poses import program_name
+from ..job.settings import Job
+from ..job.typed import typed
 from ..job.workpiece import check_faces, make_stocked_field, read_design, shape_warnings
-from . import finish, heat, idle
+from . import finish, heat, idle, last_door
 from .checkpoints import RunCheckpoints
 from .result import Result
 
@@ -25,42 +32,51 @@ NOTES = 3  # warnings shown behind an error
 class _Phases:
     """Wall time by phase, s."""
 
-    def __init__(self):
-        self.seconds = {}
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = {}
         self.restart()
 
-    def restart(self):
+    def restart(self) -> None:
         self._last = time.perf_counter()
 
-    def end(self, name):
+    def end(self, name: str) -> None:
         self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - self._last
         self.restart()
 
 
 def run(
-    job,
-    context=None,
-    recording=None,
-    early=None,
-    influence=False,
-    shifts=False,
-    forces=False,
-    resume=True,
-):
+    job: Job | Json,
+    context: Context = None,
+    recording: core.Recording | None = None,
+    early: Callable[[Facts], object] | None = None,
+    influence: bool = False,
+    shifts: bool = False,
+    forces: bool = False,
+    resume: bool = True,
+) -> Result:
     """Runs a validated job. Raises InputError for what the user must mend, Cancelled on cancel.
     ``recording``: an empty core.Recording that is to follow it, program after program; ``early(warnings)``: is called
     with a list of the first of its warnings before anything is ground; ``influence``: the result has a
     core.Influence, what every motion of all programs removed where; ``forces``: and ``force_influence``, mm that each would
     remove more per relative change of its force; ``shifts``: it has what laws would have removed
     more that are a standard deviation off (``law.shifted_laws``); ``resume``: it goes on from a state of an earlier run
-    of this process, and keeps its own for later ones, which takes memory and a little time.
+    of this process, and keeps its own for later ones, which takes memory and a little time. A result that cannot be is
+    a fault of the program, a RuntimeError (``last_door``).
     """
-    warnings = []
+    warnings: Facts = []
     phases = _Phases()
     try:
         context = context or core.RunContext()
         result, by_law = _run(
-            job, context, warnings, recording, phases, early, influence, forces, resume
+            records.plain(job),
+            context,
+            warnings,
+            recording,
+            phases,
+            early,
+            influence,
+            forces,
+            resume,
         )
         result.shifts = by_law if shifts else None
         return result
@@ -76,7 +92,7 @@ def run(
         raise error.followed_by("simulation.notes", ". Note: {notes}", notes=notes) from None
 
 
-def _out_of_memory(ended):
+def _out_of_memory(ended: Collection[str]) -> InputError:
     """The InputError that says what would need less; ``ended``: phases by name."""
     advice = {
         "programs": core.Fact("simulation.less_program", "split the programs"),
@@ -92,34 +108,47 @@ def _out_of_memory(ended):
             "enlarge sampling.spacing_mm, or simulation.max_travel_mm",
         ),
     }
-    phase = next((name for name in advice if name not in ended), None)
+    phase = next((name for name in advice if name not in ended), "sample")
     return InputError(
         "simulation.run_out_of_memory",
         "out of memory; {advice}, or close other programs",
-        advice=advice.get(phase, advice["sample"]),
+        advice=advice[phase],
     )
 
 
-def _run(job, context, warnings, recording, phases, early, influence, forces, resume):
+def _run(
+    data: Json,
+    context: core.RunContext,
+    warnings: Facts,
+    recording: core.Recording | None,
+    phases: _Phases,
+    early: Callable[[Facts], object] | None,
+    influence: bool,
+    forces: bool,
+    resume: bool,
+) -> tuple[Result, Floats]:
     phases.restart()
-    digests = inputs.digests(job)
+    digests = inputs.digests(data)
     phases.end("hash")
-    core.check_wheel(engine_arguments(job)[0])
-    left_out = []
-    paths = [tool_path(job, i, warnings, gaps=left_out) for i in range(len(job["programs"]))]
-    unresolved = len(warnings) + sum(program["unresolved"] for program in job["programs"])
+    job = typed(data)
+    core.check_wheel(engine_input.of(job).machine.wheel)
+    left_out: list[Array] = []
+    paths = [tool_path(job, i, warnings, gaps=left_out) for i in range(len(job.programs))]
+    unresolved = len(warnings) + sum(program.unresolved or 0 for program in job.programs)
     warnings += idle.warnings(job, paths)
+    warnings += usual.warnings(data, [arrays_of(path) for path in paths])
     ways = motions.of_paths(paths)
     phases.end("programs")
     reached = reach.job_reach(job, paths, context.part(0.0, 0.0))
     phases.end("reach")
-    shape = read_design(job["design"], context)
+    shape = read_design(job.design, context)
     warnings += shape_warnings(shape)
     phases.end("read")
     check_faces(job, shape)
-    job, chosen = spacing.settled(job, shape, warnings, context.part(0.0, 0.0))
-    job = resolution.applied(job, warnings)
-    wheel, compliance, law, options = engine_arguments(job)
+    settled, chosen = spacing.settled(data, shape, warnings, context.part(0.0, 0.0))
+    data = resolution.applied(settled, warnings)
+    job = typed(data)
+    given = engine_input.of(job)
     sampled = lambda: phases.end("sample")
     field = make_stocked_field(job, shape, warnings, context.part(0.0, 0.27), sampled)
     phases.end("stock")
@@ -134,32 +163,31 @@ def _run(job, context, warnings, recording, phases, early, influence, forces, re
 
     removed = core.Influence() if influence else None
     pressed = core.Influence() if forces else None
-    speed_effects = _speed_effects(job, options)
-    options.update(
-        first_motion=0,
+    speed_effects = _speed_effects(given)
+    given = replace(
+        given,
         influence=influence,
         force_influence=forces,
         lower_limits=verdicts.lower_limits(job, field),
         heat=heated,
         finish=finished,
     )
-    shifts = np.zeros((field.size, len(options["shifted_laws"])))
+    shifts = np.zeros((field.size, len(given.shifted_laws)))
     checkpoints = RunCheckpoints(
         field,
-        (wheel, compliance, law, options | {"heat": heat.plain(heated)}),
+        replace(given, heat=heat.plain(heated)),
         recording is not None,
         len(paths),
         resume,
     )
     phases.end("hash")
-    found, steps, process_time, lost, models = [], None, 0.0, 0.0, {}
+    found, process_time, lost, models = [], 0.0, 0.0, {}
+    steps: dict[str, Array] = {}
     for i, path in enumerate(paths):
         share = 0.7 / len(paths)
         part = context.part(0.3 + i * share, 0.3 + (i + 1) * share)
         try:
-            result = core.simulate(
-                field, path, wheel, compliance, law, options, part, recording, checkpoints.next()
-            )
+            result = core.simulate(field, path, given, part, recording, checkpoints.next())
         except Cancelled:
             checkpoints.keep()
             raise
@@ -171,23 +199,24 @@ def _run(job, context, warnings, recording, phases, early, influence, forces, re
         lists = [one[i]["events"] for one in (reached, met) if one]
         lists.append(gaps.events(path, left_out[i]))
         found.append((i, process_time, sum(lists, result["events"])))
-        if influence:
+        if removed is not None:
             removed.append(result["influence"])
-        if forces:
+        if pressed is not None:
             pressed.append(result["force_influence"])
         rows = result["steps"]
         rows["program"] = np.full(len(rows["time"]), i, dtype=np.uint32)
         rows["time"] = rows["time"] + process_time
-        steps = rows if steps is None else {k: np.concatenate([steps[k], rows[k]]) for k in rows}
+        steps = rows if not steps else {k: np.concatenate([steps[k], rows[k]]) for k in rows}
         process_time += result["process_time"]
         lost += result["lost_volume"]
-        options["belt"] = result["belt"]
-        options["first_motion"] += len(path)
+        given = replace(given, belt=result["belt"], first_motion=given.first_motion + len(path))
         shifts += result["shifts"]
         models = {key: result[key] for key in ("compliance", "law")}
         for name, seconds in result["wall"].items():
             phases.seconds[name] = phases.seconds.get(name, 0.0) + seconds
     checkpoints.keep()
+    belt = given.belt
+    assert belt is not None  # a job has a program
     phases.restart()
     if shifts.shape[1]:
         field.set_height_sd(np.sqrt((shifts**2).sum(axis=1)))
@@ -195,7 +224,7 @@ def _run(job, context, warnings, recording, phases, early, influence, forces, re
     summary = summarise(job, field, events)
     phases.end("inspect")
     summary.update(
-        spacing_mm=job["sampling"]["spacing_mm"],
+        spacing_mm=job.sampling.spacing_mm,
         spacing_chosen=chosen,
         resolution=resolution.mode(job),
         steps=len(steps["time"]),
@@ -207,37 +236,35 @@ def _run(job, context, warnings, recording, phases, early, influence, forces, re
         warning_facts=[fact_data(warning) for warning in warnings],
         inputs=digests,
         models=models,
-        belt={
-            **laws.job_belt(options["belt"]),
-            "remaining_cut": remaining_cut(job, options["belt"]),
-        },
-        robot=reach.summary(job["robot"], reached),
+        belt={**laws.job_belt(belt), "remaining_cut": remaining_cut(job, belt)},
+        robot=reach.summary(data["robot"], reached),
         clearances=collision.summary(met, paths),
         unresolved_motions=unresolved,
     )
-    result = Result(job, field, summary, events, steps, recording)
-    result.motions = ways
-    result.influence, result.force_influence = removed, pressed
+    done = Result(dict(data), field, summary, events, steps, recording)
+    done.motions = ways
+    done.influence, done.force_influence = removed, pressed
     phases.restart()
-    result.verdict = verdicts.of_result(result, shape, context=context.part(1.0, 1.0))
-    result.tell_finish(job["inspection"])
+    done.verdict = verdicts.of_result(done, shape, context=context.part(1.0, 1.0))
+    done.tell_finish(data["inspection"])
+    last_door.check(done)
     phases.end("verdict")
-    return result, shifts
+    return done, shifts
 
 
-def _speed_effects(job, options):
+def _speed_effects(given: engine_input.EngineInput) -> dict[str, float]:
     """What the summary says of how the rubber behaves at speed, where it is not left out."""
-    factor = job["belt_machine"]["compliance"]["dynamic_modulus_factor"]
-    growth = options["wheel_growth"]
+    factor = given.machine.compliance.dynamic_modulus_factor
+    growth = given.wheel_growth
     return {
         **({"dynamic_modulus_factor": factor} if factor != 1.0 else {}),
         **({"wheel_growth_mm": growth} if growth > 0.0 else {}),
     }
 
 
-def summarise(job, field, events):
+def summarise(job: Job, field: core.HeightField, events: Sequence[Json]) -> dict[str, Any]:
     """The figures of a ground field, as summary.json has them."""
-    lower, upper = job["inspection"]["tolerance_mm"]
+    lower, upper = job.inspection.tolerance_mm
     s = core.deviation_statistics(field, lower, upper)
     uncertainty = {}
     if "sd_mean" in s:

@@ -1,20 +1,27 @@
 """What a study's table answers: yield, main effects, Sobol indices, the best setting. docs/study.md says what they mean."""
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..base.kinds import Array, Context, Facts, Floats, Json
 from ..base.messages import fact_data
 from ..engine import InputError, core
-from . import best, chaos, effects, resampling, share, sobol
+from . import best, chaos, effects, processes, resampling, share, sobol
 from .inputs import inputs_of
 from .table import ERROR, FAILED, OPEN, RUN, STATUS
 
+if TYPE_CHECKING:
+    from .inputs import Input
+    from .kinds import Limits, Variables
+    from .table import Table
+
 FORMAT = 1
 OVERALL = "overall"
-VERDICTS = ("pass", "fail", "unknown")
 FEW = 30  # runs, below which intervals by resampling are told to be too narrow
-RANDOM = ("monte_carlo", "latin_hypercube", "sobol")
 # Figures that are answered for if the study names none.
 USUAL = """
     in_share
@@ -32,22 +39,27 @@ SIDES = {"above_share": "not_above", "below_share": "not_below"}
 class Sample(NamedTuple):
     """The runs that count, as arrays of the same length."""
 
-    rows: np.ndarray  # of the table
-    variables: dict  # {name: (n,)}
-    groups: object  # (n,) runs that depend on each other, or None
+    rows: Array  # of the table
+    variables: dict[str, Array]  # {name: (n,)}
+    groups: Array | None  # (n,) runs that depend on each other, or None
     random: bool  # whether a share of them is a probability
 
 
-def answers(study, meta, table, context=None):
+def answers(study: Json, meta: Json, table: Table, context: Context = None) -> dict[str, Any]:
     """The answers, a dict as answers.json has it.
 
     ``study``: with its defaults; ``meta``: of design.json; ``table``: a ``Table``. Raises InputError where nothing was run,
     for figures that the table does not have, and without OpenTURNS; Cancelled.
     """
-    context = context or core.RunContext()
+    asked = {name: study[name] for name in ("answers", "correlations", "vary") if name in study}
+    return processes.apart(_answers, asked, meta, table, context=context)
+
+
+def _answers(study: Json, meta: Json, table: Table, context: core.RunContext) -> dict[str, Any]:
     wanted = study.get("answers", {})
     varied = list(meta["varied"])
-    done, notes = table.done, []
+    done = table.done
+    notes: Facts = []
     runs = _counts(table, notes)
     if not done.any():
         raise InputError(
@@ -74,7 +86,7 @@ def answers(study, meta, table, context=None):
             )
         )
     drawn = resampling.counts(len(sample.rows), sample.groups) if sample.random else None
-    found = {
+    found: dict[str, Any] = {
         "format": FORMAT,
         "design": {key: meta[key] for key in ("method", "size", "runs", "seed")},
         "runs": runs,
@@ -95,10 +107,10 @@ def answers(study, meta, table, context=None):
     return found
 
 
-def _counts(table, notes):
+def _counts(table: Table, notes: Facts) -> dict[str, Any]:
     """dict(all, done, failed, open, errors [dict(text, count, run)]) of the runs."""
     status = table[STATUS]
-    texts = {}
+    texts: dict[str, list[int]] = {}
     for row in np.flatnonzero(status == FAILED):
         told = texts.setdefault(str(table[ERROR][row]), [0, int(table[RUN][row])])
         told[0] += 1
@@ -134,7 +146,7 @@ def _counts(table, notes):
     return counts
 
 
-def _sample(table, meta, varied, done):
+def _sample(table: Table, meta: Json, varied: Sequence[str], done: Array) -> Sample:
     groups = None
     rows = np.flatnonzero(done)
     if meta["method"] == "sobol_indices":
@@ -143,14 +155,16 @@ def _sample(table, meta, varied, done):
     return Sample(rows, variables, groups, meta["method"] != "grid")
 
 
-def plain(values):
+def plain(values: Array) -> Array:
     """Numbers as they are; truth values, lists and texts as texts."""
     if values.dtype.kind in "fiu":
         return values
     return np.array([str(value) for value in values], dtype=object)
 
 
-def _figures(table, wanted, varied, done, notes):
+def _figures(
+    table: Table, wanted: Json, varied: Sequence[str], done: Array, notes: Facts
+) -> list[str]:
     """Names of the figures to answer for: numbers, not the same in all runs."""
     asked = wanted.get("figures") or []
     for name in asked:
@@ -165,7 +179,8 @@ def _figures(table, wanted, varied, done, notes):
     there = _numeric(table, varied)
     names = asked or [name for name in USUAL if name in there] or there
     zones = [name for name in there if name.startswith("zones.") and name.endswith(".in_share")]
-    kept, same = [], []
+    kept: list[str] = []
+    same: list[str] = []
     for name in dict.fromkeys([*names, *([] if asked else zones)]):
         values = table[name][done]
         known = values[np.isfinite(values)] if values.dtype.kind in "fiu" else values[:0]
@@ -181,21 +196,21 @@ def _figures(table, wanted, varied, done, notes):
     return kept
 
 
-def _numeric(table, varied):
+def _numeric(table: Table, varied: Sequence[str]) -> list[str]:
     left_out = {RUN, *varied}
     return [n for n in table.names if n not in left_out and table[n].dtype.kind in "fiu"]
 
 
-def _yield(table, meta, notes):
+def _yield(table: Table, meta: Json, notes: Facts) -> list[dict[str, Any]]:
     """[dict(of, name, passed, ..., low, high)] of the verdict, each zone's, and either side of the tolerance. Empty where
     the table has no verdict. Of blocks, only the first two are independent runs."""
     rows = np.flatnonzero(table.done)
     if meta["method"] == "sobol_indices":
         rows = rows[rows < 2 * meta["size"]]
     random = meta["method"] != "grid"
-    found = []
+    found: list[dict[str, Any]] = []
 
-    def add(of, name, verdicts):
+    def add(of: str, name: str, verdicts: Array) -> None:
         found.append({"of": of, "name": name, **share.of(list(verdicts), random)})
 
     for name in table.names:
@@ -227,7 +242,16 @@ def _yield(table, meta, notes):
     return found
 
 
-def _of_figure(name, table, sample, drawn, inputs, meta, study, context):
+def _of_figure(
+    name: str,
+    table: Table,
+    sample: Sample,
+    drawn: Floats | None,
+    inputs: Sequence[Input],
+    meta: Json,
+    study: Json,
+    context: core.RunContext,
+) -> dict[str, Any]:
     values = table[name][sample.rows].astype(float)
     known = np.isfinite(values)
     variables = {key: column[known] for key, column in sample.variables.items()}
@@ -250,11 +274,18 @@ def _of_figure(name, table, sample, drawn, inputs, meta, study, context):
     }
 
 
-def _indices(name, table, inputs, meta, study, context):
+def _indices(
+    name: str,
+    table: Table,
+    inputs: Sequence[Input],
+    meta: Json,
+    study: Json,
+    context: core.RunContext,
+) -> dict[str, Any]:
     """Sobol indices of a figure, or why there are none: dict(method, variables, first, total, count, ...), or
     dict(reason: a fact)."""
 
-    def none(code, text, **arguments):
+    def none(code: str, text: str, **arguments: object) -> dict[str, Any]:
         return {"reason": fact_data(core.Fact(code, text, **arguments))}
 
     if study["correlations"]:
@@ -335,14 +366,16 @@ def _indices(name, table, inputs, meta, study, context):
     return found
 
 
-def _best(wanted, table, inputs, study, meta):
+def _best(
+    wanted: Json, table: Table, inputs: Sequence[Input], study: Json, meta: Json
+) -> dict[str, Any]:
     """The best run, as ``best.of_runs``, with its row's values; and what a response surface says, if it is asked."""
     numeric = _numeric(table, [one.name for one in inputs])
     figures = {name: table[name].astype(float) for name in numeric}
     good = table.done.copy()
     if wanted["passing"]:
         good &= table[OVERALL] == "pass"
-    limits = {name: tuple(pair) for name, pair in wanted["limits"].items()}
+    limits = {name: (low, high) for name, (low, high) in wanted["limits"].items()}
     figure, goal = wanted["figure"], wanted["goal"]
     found = best.of_runs(figures, figure, goal, limits, good)
     found.update(figure=figure, goal=goal, limits=wanted["limits"], passing=wanted["passing"])
@@ -363,7 +396,14 @@ def _best(wanted, table, inputs, study, meta):
     return found
 
 
-def _surface(figures, figure, goal, limits, table, inputs):
+def _surface(
+    figures: Variables,
+    figure: str,
+    goal: str,
+    limits: Limits,
+    table: Table,
+    inputs: Sequence[Input],
+) -> dict[str, Any] | None:
     used = [one for one in inputs if one.varies]
     if not used:
         return None
@@ -379,6 +419,6 @@ def _surface(figures, figure, goal, limits, table, inputs):
     return {**said, "values": values}
 
 
-def _json(value):
+def _json(value: Any) -> Any:
     value = value.item() if hasattr(value, "item") else value
     return None if isinstance(value, float) and not np.isfinite(value) else value

@@ -1,15 +1,25 @@
 """The parts of a batch: each the study's job with a scan as its stock, or a job of its own."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..base.files import at_key
+from ..base.kinds import Context, Facts, Json
 from ..engine import InputError, core
 from ..job import load as jobs
 from ..scan import stock as scan_stock
 from . import vary
 
+if TYPE_CHECKING:
+    from .vary import Variable
 
-def parts(job, found, context=None):
+
+def parts(
+    job: Json, found: Sequence[Variable], context: Context = None
+) -> tuple[list[str], list[Json], Facts]:
     """(names, validated jobs, warnings) of the parts; ([], [``job``], []) where the study has none. ``job``: the
     study's, validated; ``found``: [Variable]. A scan is laid on the design here, once. Raises InputError, Cancelled.
     """
@@ -17,7 +27,9 @@ def parts(job, found, context=None):
     if not lists:
         return [], [job], []
     context = context or core.RunContext()
-    names, made, warnings = [], [], []
+    names: list[str] = []
+    made: list[Json] = []
+    warnings: Facts = []
     for k, part in enumerate(lists[0]):
         file = part.get("job") or part["scan"]
         name = part.get("name", Path(file).stem)
@@ -35,7 +47,9 @@ def parts(job, found, context=None):
     return names, made, warnings
 
 
-def _job(part, file, job, name, warnings, context):
+def _job(
+    part: Json, file: str, job: Json, name: str, warnings: Facts, context: core.RunContext
+) -> Json:
     if "job" in part:
         return jobs.load(file)
     made, laid = scan_stock.as_stock(

@@ -1,9 +1,18 @@
 """The best setting under limits: among the runs, and what a response surface says between them."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
+from ..base.kinds import Array, Floats, known
 from ..engine import InputError
 from . import chaos, design
+
+if TYPE_CHECKING:
+    from .kinds import Limits, OpenTurns, Variables
 
 GOALS = ("minimise", "maximise")
 TIE = 1e-9  # relative, of the figures' range
@@ -12,10 +21,12 @@ ROUNDS = 6
 SHRINK = 0.4  # of the box around the best place, each round
 
 
-def of_runs(figures, figure, goal, limits, good):
+def of_runs(
+    figures: Variables, figure: str, goal: str, limits: Limits, good: Array
+) -> dict[str, Any]:
     """The best of the runs that were done.
 
-    ``figures``: {name: (n,)}, NaN where it is not known; ``figure``: which to ``goal`` ("minimise", "maximise");
+    ``figures``: {name: (n,)}, NaN where it is not judged; ``figure``: which to ``goal`` ("minimise", "maximise");
     ``limits``: {name: (low or None, high or None)} of other figures or of itself; ``good``: (n,) bool, runs that may be
     chosen. Returns dict(run, value, ties, feasible, judged, nearest): ``run`` is the row, None where no run keeps all
     limits; ``ties``: other rows that are as good; ``nearest``: then dict(run, beyond {name: by how much}), the row that
@@ -23,32 +34,32 @@ def of_runs(figures, figure, goal, limits, good):
     """
     _check(figures, figure, goal, limits)
     values = figures[figure]
-    known = good & np.isfinite(values)
+    judged = good & np.isfinite(values)
     for name in limits:
-        known &= np.isfinite(figures[name])
+        judged &= np.isfinite(figures[name])
     over = {name: beyond(figures[name], *pair) for name, pair in limits.items()}
-    inside = known.copy()
+    inside = judged.copy()
     for far in over.values():
         inside &= far <= 0.0
-    found = {"run": None, "value": None, "ties": [], "nearest": None}
-    found.update(feasible=int(inside.sum()), judged=int(known.sum()))
+    found: dict[str, Any] = {"run": None, "value": None, "ties": [], "nearest": None}
+    found.update(feasible=int(inside.sum()), judged=int(judged.sum()))
     if inside.any():
         signed = np.where(inside, _sign(goal) * values, np.inf)
         best = int(np.argmin(signed))
-        slack = TIE * max(float(np.ptp(values[known])), 1e-300)
+        slack = TIE * max(float(np.ptp(values[judged])), 1e-300)
         ties = np.flatnonzero(signed <= signed[best] + slack)
         found.update(run=best, value=float(values[best]), ties=[int(k) for k in ties if k != best])
-    elif known.any():
+    elif judged.any():
         total = np.zeros(len(values))
         for name, far in over.items():
-            total += far / (float(np.ptp(figures[name][known])) or 1.0)
-        nearest = int(np.argmin(np.where(known, total, np.inf)))
+            total += far / (float(np.ptp(figures[name][judged])) or 1.0)
+        nearest = int(np.argmin(np.where(judged, total, np.inf)))
         broken = {name: float(far[nearest]) for name, far in over.items() if far[nearest] > 0.0}
         found["nearest"] = {"run": nearest, "beyond": broken}
     return found
 
 
-def _check(figures, figure, goal, limits):
+def _check(figures: Variables, figure: str, goal: str, limits: Limits) -> None:
     if goal not in GOALS:
         raise InputError(
             "studies.best_goal", "best: '{goal}' is no goal; it is minimise or maximise", goal=goal
@@ -63,11 +74,11 @@ def _check(figures, figure, goal, limits):
             )
 
 
-def _sign(goal):
+def _sign(goal: str) -> float:
     return 1.0 if goal == "minimise" else -1.0
 
 
-def beyond(values, low, high):
+def beyond(values: Array, low: float | None, high: float | None) -> Array:
     """By how much values (of any shape) lie beyond limits, each of which may be None."""
     far = np.zeros(np.shape(values))
     if low is not None:
@@ -77,7 +88,15 @@ def beyond(values, low, high):
     return far
 
 
-def suggested(inputs, figures, figure, goal, limits, distributions, good):
+def suggested(
+    inputs: Floats,
+    figures: Variables,
+    figure: str,
+    goal: str,
+    limits: Limits,
+    distributions: Sequence[OpenTurns],
+    good: Array,
+) -> dict[str, Any] | None:
     """What response surfaces say: a setting between the runs, which is to be run as a check.
 
     ``inputs``: (n, d) of the variables; ``distributions``: theirs, of OpenTURNS; the rest as ``of_runs``. Searched is
@@ -91,13 +110,15 @@ def suggested(inputs, figures, figure, goal, limits, distributions, good):
     for name in needed:
         rows &= np.isfinite(figures[name])
     given = inputs[rows]
-    quality, surfaces, poor = {}, {}, {}
+    quality: dict[str, list[float]] = {}
+    surfaces: dict[str, chaos.Surface] = {}
+    poor: dict[str, float] = {}
     for name in needed:
         values = figures[name][rows]
         found = chaos.of_sample(given, values, distributions)
         if found is None:
             if len(values) and np.ptp(values) == 0.0:
-                surfaces[name] = lambda places, value=values[0]: np.full(len(places), value)
+                surfaces[name] = _level(values[0])
                 continue
             return None
         quality[name] = [found["q2"], found["linear_q2"]]
@@ -113,14 +134,27 @@ def suggested(inputs, figures, figure, goal, limits, distributions, good):
     return {"inputs": place, "predicted": predicted, "q2": quality, "feasible": inside}
 
 
-def _search(given, distributions, surfaces, figure, sign, limits):
+def _level(value: float) -> chaos.Surface:
+    """The surface of a figure that is the same in all runs."""
+    return lambda places: np.full(len(places), value)
+
+
+def _search(
+    given: Floats,
+    distributions: Sequence[OpenTurns],
+    surfaces: Mapping[str, chaos.Surface],
+    figure: str,
+    sign: float,
+    limits: Limits,
+) -> Floats:
     """(d,) the best place of the surfaces: many places of the box, then of ever smaller ones around the best."""
     ot = design.openturns()
     low, high = given.min(axis=0), given.max(axis=0)
     unit = np.asarray(ot.SobolSequence(given.shape[1]).generate(CANDIDATES))
     few = {k: np.unique(given[:, k]) for k, one in enumerate(distributions) if one.isDiscrete()}
     scale = {name: float(np.ptp(surface(given))) or 1.0 for name, surface in surfaces.items()}
-    best, size = None, high - low
+    best: Floats | None = None
+    size = high - low
     for _ in range(ROUNDS):
         begin = low if best is None else np.clip(best - 0.5 * size, low, high - size)
         places = begin + unit * size
@@ -139,4 +173,4 @@ def _search(given, distributions, surfaces, figure, sign, limits):
         order = np.where(inside, wanted, np.inf) if inside.any() else far
         best = places[int(np.argmin(order))]
         size = SHRINK * size
-    return best
+    return known(best)

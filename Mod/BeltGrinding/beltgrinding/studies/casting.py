@@ -1,7 +1,12 @@
 """One casting of a batch by its scan: whether it passes as the job's program grinds it, with a plan of its own, or is scrap."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
+from ..base.kinds import Context, Json
 from ..base.messages import fact_data, sentence
 from ..engine import InputError, core
 from ..inspection import verdict as verdicts
@@ -9,6 +14,10 @@ from ..job import inputs, workpiece
 from ..planning import apply, pictures, reasons, rounds as plans
 from ..scan import stock as scan_stock
 from ..simulation import run as runs
+
+if TYPE_CHECKING:
+    from ..reporting.language import Language
+    from .kinds import Task
 
 PASSES, PLANNED, SCRAP, UNKNOWN = "passes", "passes with plan", "scrap", "unknown"
 SORTS = (PASSES, PLANNED, SCRAP, UNKNOWN)
@@ -26,7 +35,7 @@ FIGURES = (  # of a row, beside its names
 )
 
 
-def one_part(task, context=None):
+def one_part(task: Task, context: Context = None) -> dict[str, Any]:
     """The row of a part: ``FIGURES`` and ``failed``, whether it could not be judged for a reason of its own. ``reason``: why
     it is what it is, in English, ``reason_facts`` the same as facts; ``shares``: of the area, of the reasons why it stays
     out of tolerance. In any process. Raises Cancelled.
@@ -35,7 +44,7 @@ def one_part(task, context=None):
     is written, or None).
     """
     context = context or core.RunContext()
-    row = {**dict.fromkeys(FIGURES), "sorted": UNKNOWN, "reason": "", "shares": {}}
+    row: dict[str, Any] = {**dict.fromkeys(FIGURES), "sorted": UNKNOWN, "reason": "", "shares": {}}
     row.update(trusted=True, reason_facts=[], failed=False)
     try:
         _sort(task, row, context)
@@ -44,7 +53,7 @@ def one_part(task, context=None):
     return row
 
 
-def _sort(task, row, context):
+def _sort(task: Task, row: dict[str, Any], context: core.RunContext) -> None:
     job, laid = scan_stock.as_stock(
         task["job"], task["scan"], **task["options"], context=context.part(0.0, 0.1)
     )
@@ -88,11 +97,11 @@ def _sort(task, row, context):
     shares = {word: share for word, share in plan.why["shares"].items() if share > reasons.LEAST}
     row["shares"] = shares
     if shares:
-        worst = max(shares, key=shares.get)
+        worst = max(shares, key=lambda word: float(shares[word]))
         row["reason"] = f"{100.0 * shares[worst]:.1f} %: {pictures.WORDS[worst]}"
 
 
-def _lacking(job, context):
+def _lacking(job: Json, context: core.RunContext) -> float:
     """Share of the area on which the stock of a job lies below the lower limit of the tolerance."""
     field = workpiece.make_field(job, workpiece.read_design(job["design"], context), [], context)
     workpiece.apply_stock(field, job["stock"], [], context)
@@ -102,7 +111,7 @@ def _lacking(job, context):
     return float(areas[below].sum() / max(areas.sum(), 1e-300))
 
 
-def _word(verdict, share):
+def _word(verdict: Json, share: float) -> str:
     """ "pass", "fail" or "unknown". Where the scan has no stock nothing is known, of either sign."""
     if share >= 1.0:
         return verdict["overall"]
@@ -114,7 +123,7 @@ def _word(verdict, share):
     )
 
 
-def reason(row, words):
+def reason(row: Json, words: Language) -> str:
     """Why a part is what it is, in the words of a ``reporting.language.Language``."""
     if row["reason_facts"]:
         return "; ".join(sentence(one, words.code) for one in row["reason_facts"])

@@ -4,11 +4,20 @@ variables, whose squared coefficients are shares of its variance (Sudret 2008, R
 OpenTURNS makes the polynomials of each density and chooses among their products by least angles; what the expansion is
 worth is told by runs that it has not seen, and a linear regression is judged by the same."""
 
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, TypeAlias
+
 import numpy as np
 
+from ..base.kinds import Array, Floats
 from . import design, resampling
 from .effects import is_constant
 from .share import CONFIDENCE
+
+if TYPE_CHECKING:
+    from .kinds import OpenTurns
 
 HIGHEST = 12  # degree
 NORM = 0.65  # of the degrees: interactions of high degree are left out
@@ -21,11 +30,13 @@ DOUBTFUL = 0.98  # below which the doubt is told: indices may be wrong by what i
 SEED = 1
 GIVES_UP = "LeastSquaresMetaModelSelection-MaximumError"  # a setting of OpenTURNS, of the process
 
+Surface: TypeAlias = Callable[[Floats], Floats]  # a figure at places
+
 
 class Chaos:
     """The expansion's terms for variables with these distributions (of OpenTURNS, independent)."""
 
-    def __init__(self, distributions, runs):
+    def __init__(self, distributions: Sequence[OpenTurns], runs: int) -> None:
         self.ot = ot = design.openturns()
         self.size = len(distributions)
         enumerate_ = ot.HyperbolicAnisotropicEnumerateFunction(self.size, NORM)
@@ -47,14 +58,14 @@ class Chaos:
             for one, most_ in zip(distributions, highest)
         ]
 
-    def matrix(self, inputs):
+    def matrix(self, inputs: Floats) -> Floats:
         """(n, terms): the polynomials at ``inputs`` (n, variables)."""
         made = np.ones((len(inputs), len(self.degrees)))
         for k, of in enumerate(self.polynomials):
             made *= of(inputs[:, k])[:, self.degrees[:, k]]
         return made
 
-    def choose(self, matrix, figure):
+    def choose(self, matrix: Floats, figure: Floats) -> Array:
         """The numbers of the terms (columns of ``matrix``) that a figure (n,) needs; the constant is one."""
         ot, rows = self.ot, np.arange(len(figure))
         if len(rows) > CHOSEN_BY:
@@ -82,7 +93,7 @@ class Chaos:
         chosen = np.flatnonzero(np.asarray(search.getCoefficients()))
         return np.union1d([0], chosen)
 
-    def shares(self, coefficients, chosen):
+    def shares(self, coefficients: Floats, chosen: Array) -> tuple[Floats, Floats]:
         """(first, total) (..., variables): the indices of coefficients (..., chosen)."""
         squares = np.square(coefficients)[..., self.degrees[chosen].any(axis=1)]
         active = self.degrees[chosen][self.degrees[chosen].any(axis=1)] > 0
@@ -91,7 +102,12 @@ class Chaos:
         return squares @ alone / variance, squares @ active / variance
 
 
-def of_sample(inputs, figure, distributions, confidence=CONFIDENCE):
+def of_sample(
+    inputs: Floats,
+    figure: Floats,
+    distributions: Sequence[OpenTurns],
+    confidence: float = CONFIDENCE,
+) -> dict[str, Any] | None:
     """Indices from a sample of independent variables: Monte Carlo, Latin hypercube or Sobol sequence.
 
     ``inputs``: (n, d); ``figure``: (n,), all finite; ``distributions``: of OpenTURNS, one a variable. Returns dict(q2,
@@ -115,7 +131,7 @@ def of_sample(inputs, figure, distributions, confidence=CONFIDENCE):
         chosen = chaos.choose(matrix[kept], wanted[kept])
         said[fold] = matrix[np.ix_(fold, chosen)] @ _fit(matrix[np.ix_(kept, chosen)], wanted[kept])
         said_linearly[fold] = linear[fold] @ _fit(linear[kept], wanted[kept])
-    found = {"q2": _q2(said, wanted), "linear_q2": _q2(said_linearly, wanted)}
+    found: dict[str, Any] = {"q2": _q2(said, wanted), "linear_q2": _q2(said_linearly, wanted)}
     chosen = chaos.choose(matrix, wanted)
     found.update(terms=len(chosen), first=None, total=None)
     if found["q2"] < POOR:
@@ -135,7 +151,7 @@ def of_sample(inputs, figure, distributions, confidence=CONFIDENCE):
     return found
 
 
-def predictor(inputs, figure, distributions):
+def predictor(inputs: Floats, figure: Floats, distributions: Sequence[OpenTurns]) -> Surface:
     """A function of (m, d) that gives the expansion's (m,) of a figure: a response surface."""
     chaos = Chaos(distributions, len(figure))
     middle, spread = figure.mean(), figure.std() or 1.0
@@ -146,28 +162,28 @@ def predictor(inputs, figure, distributions):
     return lambda places: middle + spread * (chaos.matrix(places)[:, chosen] @ coefficients)
 
 
-def _fit(matrix, wanted):
+def _fit(matrix: Floats, wanted: Floats) -> Floats:
     return np.linalg.lstsq(matrix, wanted, rcond=None)[0]
 
 
-def _q2(said, wanted):
+def _q2(said: Floats, wanted: Floats) -> float:
     return float(1.0 - np.mean((said - wanted) ** 2) / np.var(wanted))
 
 
-def _of_density(ot, distribution, highest):
+def _of_density(ot: OpenTurns, distribution: OpenTurns, highest: int) -> Surface:
     """(n,) -> (n, highest + 1): the orthonormal polynomials of a variable with a density."""
     factory = ot.StandardDistributionPolynomialFactory(distribution)
     standard = ot.DistributionTransformation(distribution, factory.getMeasure())
     polynomials = [factory.build(k) for k in range(highest + 1)]
 
-    def of(values):
+    def of(values: Floats) -> Floats:
         given = np.asarray(standard(ot.Sample(values[:, None])))[:, 0]
         return np.column_stack([np.array([one(x) for x in given]) for one in polynomials])
 
     return of
 
 
-def _of_values(ot, distribution, highest):
+def _of_values(ot: OpenTurns, distribution: OpenTurns, highest: int) -> Surface:
     """The same of a variable with few values: found by orthogonalisation under their probabilities, exact at the values,
     which are all it may be given."""
     points = np.asarray(distribution.getSupport())[:, 0]
@@ -178,13 +194,13 @@ def _of_values(ot, distribution, highest):
     at_points = found / np.sqrt(shares)[:, None]
     at_points *= np.sign(at_points[0, 0])
 
-    def of(values):
+    def of(values: Floats) -> Floats:
         return at_points[np.abs(values[:, None] - points).argmin(axis=1)]
 
     return of
 
 
-def _degrees(distribution):
+def _degrees(distribution: OpenTurns) -> int:
     """The highest degree of a variable: of one with few values, by which they are told apart."""
     if distribution.isDiscrete():
         return len(distribution.getSupport()) - 1

@@ -3,10 +3,20 @@
 ``words``: a callable that gives a text in the reader's language and has ``figures(value, count)``, as
 ``reporting.language.Language``."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
 from ..base import plotting
+from ..base.kinds import Array, Floats, Json
 from ..base.plotting import BLUE, GREEN, GREY, ORANGE, RED
+
+if TYPE_CHECKING:
+    from ..reporting.language import Language
+    from .kinds import Variables
 
 MOST_BARS = 14
 COLUMNS = 3
@@ -19,7 +29,9 @@ LEGEND = 0.3  # inches
 CHOICES_SHOWN = 12  # letters of a text on an axis
 
 
-def tornado(effects, middle, figure, words, dpi=110):
+def tornado(
+    effects: Sequence[Json], middle: float, figure: str, words: Language, dpi: float = 110
+) -> bytes:
     """``effects``: as ``effects.main_effects``, of which those that do most are drawn; ``middle``: the figure's mean over
     all runs; ``figure``: what it is called."""
     shown = sorted(effects, key=lambda one: one["range"])[-MOST_BARS:]
@@ -52,7 +64,7 @@ def tornado(effects, middle, figure, words, dpi=110):
     return plotting.saved(drawn, dpi=dpi)
 
 
-def _ends(one):
+def _ends(one: Json) -> tuple[Json, Json]:
     """The levels between which the swing is."""
     levels = one["levels"]
     if isinstance(levels[0]["from"], str):
@@ -61,21 +73,23 @@ def _ends(one):
     return levels[0], levels[-1]
 
 
-def _span(level, words):
+def _span(level: Json, words: Language) -> str:
     if level["from"] == level["to"]:
         return _value(level["from"], words)
     return f"{_value(level['from'], words)} … {_value(level['to'], words)}"
 
 
-def _value(value, words):
+def _value(value: str | float, words: Language) -> str:
     return _short(value, CHOICES_SHOWN) if isinstance(value, str) else words.figures(value, 3)
 
 
-def _short(text, most):
+def _short(text: str, most: int) -> str:
     return text if len(text) <= most else f"{text[: most // 2]}…{text[1 - (most - most // 2) :]}"
 
 
-def effects(found, middle, figure, words, dpi=110):
+def effects(
+    found: Sequence[Json], middle: float, figure: str, words: Language, dpi: float = 110
+) -> bytes:
     """The mean of a figure over the levels of each variable, with its interval; arguments as ``tornado``."""
     shown = sorted(found, key=lambda one: -one["range"])[: 4 * COLUMNS]
     columns = _columns(len(shown))
@@ -111,7 +125,14 @@ def effects(found, middle, figure, words, dpi=110):
     return plotting.saved(drawn, dpi=dpi)
 
 
-def scatter(variables, values, verdicts, figure, words, dpi=110):
+def scatter(
+    variables: Variables,
+    values: Array,
+    verdicts: Array | None,
+    figure: str,
+    words: Language,
+    dpi: float = 110,
+) -> bytes:
     """A figure against each variable, a point a run in the colour of its verdict. ``variables``: {name: (n,)};
     ``values``: (n,); ``verdicts``: (n,) "pass", "fail" or "unknown", or None."""
     names = list(variables)[: 4 * COLUMNS]
@@ -129,7 +150,7 @@ def scatter(variables, values, verdicts, figure, words, dpi=110):
     return plotting.saved(drawn, dpi=dpi)
 
 
-def matrix(columns, verdicts, words, dpi=110):
+def matrix(columns: Variables, verdicts: Array | None, words: Language, dpi: float = 110) -> bytes:
     """Each of the first six columns against each other; on the diagonal how often which value comes. ``columns``: {name:
     (n,)}; ``verdicts`` as ``scatter``."""
     names = list(columns)[:MOST_IN_MATRIX]
@@ -162,7 +183,7 @@ def matrix(columns, verdicts, words, dpi=110):
     return plotting.saved(drawn, dpi=dpi)
 
 
-def _is_text(axes):
+def _is_text(axes: Any) -> bool:
     """Whether an axis has ticks of its own, which must not be counted anew."""
     from matplotlib.ticker import FixedLocator
 
@@ -171,7 +192,7 @@ def _is_text(axes):
     )
 
 
-def yields(rows, words, dpi=110):
+def yields(rows: Sequence[tuple[str, Json]], words: Language, dpi: float = 110) -> bytes:
     """Bars of shares with their intervals. ``rows``: [(text, dict as ``share.of``)]."""
     drawn = plotting.figure(7.2, 0.9 + 0.38 * len(rows))
     axes = drawn.add_subplot()
@@ -190,7 +211,9 @@ def yields(rows, words, dpi=110):
     return plotting.saved(drawn, dpi=dpi)
 
 
-def indices(found, names, figure, words, dpi=110):
+def indices(
+    found: Json, names: Sequence[str], figure: str, words: Language, dpi: float = 110
+) -> bytes:
     """Sobol indices with their intervals. ``found``: dict(first, total), lists of (value, low, high) in the order of
     ``names``."""
     order = np.argsort([one[0] for one in found["total"]])[-MOST_BARS:]
@@ -216,20 +239,20 @@ def indices(found, names, figure, words, dpi=110):
     return plotting.saved(drawn, dpi=dpi)
 
 
-def _columns(count):
+def _columns(count: int) -> int:
     return 2 if count == 4 else min(COLUMNS, count)
 
 
-def _some(count):
+def _some(count: int) -> Array:
     """At most as many runs as can be told apart, evenly chosen."""
     return np.unique(np.linspace(0, count - 1, min(count, MOST_POINTS)).astype(int))
 
 
-def _chosen(verdicts, some):
+def _chosen(verdicts: Array | None, some: Array) -> Array | None:
     return None if verdicts is None else np.asarray(verdicts, dtype=object)[some]
 
 
-def _coded(values):
+def _coded(values: Array) -> tuple[Floats, list[str] | None]:
     """(numbers, texts or None): text as the number of its place among all."""
     if values.dtype.kind in "fiu":
         return values.astype(float), None
@@ -237,7 +260,9 @@ def _coded(values):
     return number.astype(float), names.tolist()
 
 
-def _points(axes, x, y, verdicts, words, size=12):
+def _points(
+    axes: Any, x: Array, y: Array, verdicts: Array | None, words: Language, size: int = 12
+) -> None:
     (x, x_names), (y, y_names) = _coded(x), _coded(y)
     if verdicts is None:
         axes.scatter(x, y, s=size, color=BLUE, alpha=0.7, lw=0)
@@ -253,7 +278,7 @@ def _points(axes, x, y, verdicts, words, size=12):
     plotting.grid(axes)
 
 
-def _tell_colours(drawn, verdicts, words):
+def _tell_colours(drawn: Any, verdicts: Array | None, words: Language) -> None:
     if verdicts is None:
         return
     texts = {"pass": words("passes"), "fail": words("fails"), "unknown": words("not known")}
@@ -273,21 +298,21 @@ def _tell_colours(drawn, verdicts, words):
     )
 
 
-def _legend(axes, entries, **where):
+def _legend(axes: Any, entries: Sequence[tuple[str, str]], **where: object) -> None:
     from matplotlib.patches import Patch
 
     patches = [Patch(color=colour, label=text) for colour, text in entries]
     axes.legend(handles=patches, fontsize=LETTERS, frameon=False, **where)
 
 
-def _small(axes, x, y):
+def _small(axes: Any, x: str, y: str) -> None:
     axes.set_xlabel(_short(x, 34), fontsize=LETTERS - 0.5)
     axes.set_ylabel(_short(y, 34), fontsize=LETTERS - 0.5)
     axes.tick_params(labelsize=LETTERS - 1)
     plotting.grid(axes)
 
 
-def _numbers(axis, words):
+def _numbers(axis: Any, words: Language) -> None:
     """Numbers as the language writes them."""
     axis.set_major_formatter(lambda value, _: words.decimal(f"{value:.5g}"))
     axis.set_tick_params(labelsize=LETTERS - 1)

@@ -1,10 +1,15 @@
 """Runs what a response surface suggests: a prediction is told with what a simulation says of it."""
 
+from __future__ import annotations
+
+from typing import Any
+
+from ..base.kinds import Context, Json
 from ..engine import InputError
 from . import best, one, table
 
 
-def check(found, study, context=None):
+def check(found: dict[str, Any], study: Json, context: Context = None) -> None:
     """Simulates the setting that the answers ``found`` suggest between the runs of a study (with its job). It gets
     ``checked`` {figure: value} and ``checked_feasible``, or ``check_failed``, why it could not be run. Nothing is done where
     nothing is suggested, or where parts vary. Raises Cancelled."""

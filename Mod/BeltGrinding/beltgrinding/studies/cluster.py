@@ -4,27 +4,40 @@ Records come back to whoever asked, who keeps them; workers need no common disk.
 theirs; what a worker does not have it asks for, and gets it with the task's next try.
 """
 
+from __future__ import annotations
+
 import collections
 import contextlib
 import logging
 import queue
 import time
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TypeAlias
 
-from ..engine import InputError, core
-from . import clusters, one, table
+
+from ..engine import InputError
+from . import clusters, one
+from .delivery import Delivery
+
+if TYPE_CHECKING:
+    from ..engine import core
+    from .clusters import There
+    from .kinds import Blob, Blobs, DoneBy, Taken, Task, Working
 
 LOGGERS = "asyncio distributed.client distributed.core distributed.comm".split()
 LOOK_S = 0.1  # between two looks for a cancellation
 CHECK_S = 2.0  # between two looks at the scheduler
 WAIT_S = 60.0  # for the first worker, and for a scheduler that has gone
 MORE = 2  # tasks waiting beside each one that is run
-MOST_TRIES = 20  # of sending what a worker needs
-ALONE_S = 60.0  # without a worker, after which a local cluster is started again
-RESTARTS = 5  # of a local cluster, one after the other without a run in between
 BLAMED = 2  # times that workers were lost with a run that was alone, after which it is given up
-ODD = 3  # errors of a worker that are none of ours, such as of one that is just ending, after which a run's is told
 MISSED = (
     2  # looks in which a task is nowhere although workers are idle: then the scheduler has lost it
+)
+
+
+# Tasks that wait; those that Dask gave up as their workers died; how often each was lost alone, by job.
+Waiting: TypeAlias = (
+    "tuple[collections.deque[Task], collections.deque[Task], collections.Counter[str]]"
 )
 
 
@@ -32,19 +45,23 @@ class Lost(Exception):
     """The scheduler has gone, or another one has taken its place."""
 
 
-def run(where, tasks, blob, taken, context, told=None, done_by=None):
-    """Runs ``tasks`` (dicts as ``one.in_worker`` takes them) and calls ``taken(record)`` for each as it comes.
-
-    ``where``: ``clusters.Local`` or ``There``; ``blob(sha256)``: the bytes of what a worker asks for; ``told(workers)``: how
-    many processes work, when that changes; ``done_by``: what workers do in place of ``work``, of tasks with a ``job_hash``. Raises InputError, Cancelled; what was taken stays taken.
-    """
+def run(
+    where: There,
+    tasks: Sequence[Task],
+    blob: Blob | None,
+    taken: Taken,
+    context: core.RunContext,
+    told: Working | None = None,
+    done_by: DoneBy = one.in_worker,
+) -> None:
+    """As ``pool.run``, on the workers of a scheduler; ``where``: a ``clusters.There``."""
     distributed = clusters.distributed()
     with _quiet():
-        _run(distributed, where, tasks, (blob, done_by or work), taken, context, told)
+        _run(distributed, where, tasks, Delivery(blob, taken), done_by, context, told)
 
 
 @contextlib.contextmanager
-def _quiet():
+def _quiet() -> Iterator[None]:
     """Dask's client logs what we see ourselves, such as a worker that is gone."""
     loggers = [logging.getLogger(name) for name in LOGGERS]
     before = [logger.level for logger in loggers]
@@ -57,67 +74,44 @@ def _quiet():
             logger.setLevel(level)
 
 
-def _run(distributed, where, tasks, means, taken, context, told):
-    waiting, suspects, blamed = collections.deque(tasks), collections.deque(), collections.Counter()
-    restarts = 0
-
-    def counted(record):
-        nonlocal restarts
-        restarts = 0
-        taken(record)
-
-    try:
-        while waiting or suspects:
-            context.throw_if_cancelled()
-            if where.own and not where.alive():
-                restarts += 1
-                if restarts > RESTARTS:
-                    raise _gone(where, len(waiting) + len(suspects))
-            where.start(context)
-            if where.own and where.address is None:  # killed as it started
-                continue
-            client = _connected(where, len(waiting) + len(suspects), context)
-            session = _Session(
-                distributed,
-                client,
-                where,
-                (waiting, suspects, blamed),
-                means,
-                counted,
-                context,
-                told,
-            )
-            try:
-                session.work()
-            except Lost:
-                session.put_back()
-            finally:
-                session.close()
-    finally:
-        where.close()
+def _run(
+    distributed: Any,
+    where: There,
+    tasks: Sequence[Task],
+    delivery: Delivery,
+    done_by: DoneBy,
+    context: core.RunContext,
+    told: Working | None,
+) -> None:
+    waiting = collections.deque(tasks)
+    suspects: collections.deque[Task] = collections.deque()
+    blamed = collections.Counter[str]()
+    while waiting or suspects:
+        client = _connected(where, len(waiting) + len(suspects), context)
+        session = _Session(
+            distributed, client, (waiting, suspects, blamed), delivery, done_by, context, told
+        )
+        try:
+            session.work()
+        except Lost:
+            session.put_back()
+        finally:
+            session.close()
 
 
-def _connected(where, open_runs, context):
+def _connected(where: There, open_runs: int, context: core.RunContext) -> Any:
     """A client. Raises InputError where nobody answers, Cancelled."""
     end, reason = time.monotonic() + WAIT_S, None
     while time.monotonic() < end:
         context.throw_if_cancelled()
         try:
-            return clusters.client(where.address)
+            return where.client()
         except (OSError, ValueError, TimeoutError) as error:
             reason = error
             if isinstance(error, ValueError):  # the address is none
                 break
             time.sleep(LOOK_S)
-            if where.own and not where.alive():
-                break
-    raise _gone(where, open_runs, reason)
-
-
-def _gone(where, open_runs, reason=None):
-    if where.own:
-        return where.not_started()
-    return InputError(
+    raise InputError(
         "studies.no_scheduler",
         "no scheduler answers at {address}{reason}; {open} runs are open, those that have ended are kept: start the same "
         "study again when it is there",
@@ -130,26 +124,33 @@ def _gone(where, open_runs, reason=None):
 class _Session:
     """One client's connection."""
 
-    def __init__(self, distributed, client, where, tasks, means, taken, context, told):
+    def __init__(
+        self,
+        distributed: Any,
+        client: Any,
+        tasks: Waiting,
+        delivery: Delivery,
+        done_by: DoneBy,
+        context: core.RunContext,
+        told: Working | None,
+    ) -> None:
         """``tasks``: two deques, of those that wait, and of those that Dask has given up because the workers that had them
         died; and how often, by job, one of these was lost with all workers while it was alone. One of these may only have been beside another that killed them: it is tried once more, alone.
-        ``means``: what gives the bytes that a worker asks for, and what a worker does.
+        ``done_by``: what a worker does.
         """
-        self.distributed, self.client, self.where = distributed, client, where
+        self.distributed, self.client = distributed, client
         self.waiting, self.suspects, self.blamed = tasks
-        self.alone = None  # the key of a suspect's future
-        (self.blob, self.done_by), self.taken = means, taken
+        self.alone: str | None = None  # the key of a suspect's future
+        self.delivery, self.done_by = delivery, done_by
         self.context, self.told = context, told
-        self.flying = {}  # future's key: (task, future)
-        self.ended = queue.SimpleQueue()
-        self.tries = collections.Counter()  # of sending what a worker needs, by job
-        self.odd = collections.Counter()  # errors that are none of ours, by job
-        self.missed = collections.Counter()  # looks in which a task was nowhere, by key
-        self.scheduler = None
+        self.flying: dict[str, tuple[Task, Any]] = {}  # future's key: (task, future)
+        self.ended = queue.SimpleQueue[str]()
+        self.missed = collections.Counter[str]()  # looks in which a task was nowhere, by key
+        self.scheduler: str | None = None
         self.workers = 0
         self.number = 0
 
-    def work(self):
+    def work(self) -> None:
         """Until all is done. Raises Lost, InputError, Cancelled."""
         looked, alone = 0.0, time.monotonic()
         while self.waiting or self.flying or self.suspects:
@@ -158,9 +159,6 @@ class _Session:
                 self._look()
                 looked = time.monotonic()
                 alone = looked if self.workers else alone
-                if self.where.own and looked - alone > ALONE_S:
-                    self.where.close()
-                    raise Lost
                 if looked - alone > WAIT_S:
                     raise InputError(
                         "studies.no_workers",
@@ -179,12 +177,12 @@ class _Session:
             if key in self.flying:
                 self._take(*self.flying.pop(key), alone=key == self.alone)
 
-    def put_back(self):
+    def put_back(self) -> None:
         """What is under way is to be done again."""
         for key in reversed(list(self.flying)):
             self._again(key, self.flying.pop(key)[0])
 
-    def _again(self, key, task):
+    def _again(self, key: str, task: Task) -> None:
         """It did not come to an end, for nothing that it is known to have done; alone it is the one to blame."""
         if key != self.alone:
             self.waiting.appendleft(task)
@@ -192,20 +190,13 @@ class _Session:
         self.blamed[task["job_hash"]] += 1
         self.suspects.append(task)
 
-    def _try_alone(self, task):
+    def _try_alone(self, task: Task) -> None:
         if self.blamed[task["job_hash"]] < BLAMED:
             self.alone = self._submit(task, {})
         else:
-            self._give_up(task)
+            self.delivery.given_up(task)
 
-    def _give_up(self, task):
-        fact = core.Fact(
-            "studies.worker_died",
-            "each worker that was given it died; perhaps it needs more memory than they have",
-        )
-        self.taken(broken_off(task["job_hash"], str(fact)))
-
-    def close(self):
+    def close(self) -> None:
         """Drops what is under way."""
         try:
             futures = [future for _, future in self.flying.values()]
@@ -215,7 +206,7 @@ class _Session:
         except Exception:  # of a connection that is gone; nothing is to be saved
             self.client.status = "closed"  # else Dask tries it again when the program ends
 
-    def _look(self):
+    def _look(self) -> None:
         """Who works, and whether it is still the same scheduler."""
         try:
             found = self.client.sync(
@@ -235,7 +226,7 @@ class _Session:
         self.workers = workers
         self._find_lost(held)
 
-    def _find_lost(self, held):
+    def _find_lost(self, held: Mapping[str, Collection[str]]) -> None:
         """Dask's scheduler (2022.12) forgets tasks that wait while all workers die: these are done again. ``held``: keys of
         the tasks that each worker has."""
         workers_idle = any(not keys for keys in held.values())
@@ -249,10 +240,11 @@ class _Session:
                 self.client.cancel([future], force=True)
                 self._again(key, task)
 
-    def _submit(self, task, blobs, worker=None):
+    def _submit(self, task: Task, blobs: Blobs, worker: str | None = None) -> str:
         self.number += 1
         try:
             future = self.client.submit(
+                work,
                 self.done_by,
                 task,
                 blobs,
@@ -268,7 +260,7 @@ class _Session:
         future.add_done_callback(lambda done: self.ended.put(done.key))
         return future.key
 
-    def _take(self, task, future, alone=False):
+    def _take(self, task: Task, future: Any, alone: bool = False) -> None:
         if future.status == "finished":
             try:
                 answer, worker = future.result(timeout=clusters.ANSWER_S)
@@ -284,83 +276,32 @@ class _Session:
             self._again(future.key, task)
             self._look()
 
-    def _answered(self, task, answer, worker, alone=False):
-        if "versions" in answer:
-            raise InputError(
-                "studies.other_version",
-                "the worker {worker} has another engine, whose figures may differ: {there} there, {here} here; install the "
-                "same",
-                worker=worker,
-                there=_versions(answer["versions"]),
-                here=_versions(core.versions()),
-            )
-        if "unseen" in answer:
-            raise InputError(
-                "studies.worker_sees_not",
-                "the worker {worker} does not see {file} as it is here; its disk must show the same files under the same paths",
-                worker=worker,
-                file=answer["unseen"],
-            )
-        if "needs" not in answer:
-            self.taken(answer)
-            return
-        self.tries[task["job_hash"]] += 1
-        if self.tries[task["job_hash"]] > MOST_TRIES:
-            raise InputError(
-                "studies.files_do_not_arrive",
-                "the worker {worker} asks again and again for the files of a run; is its disk full?",
-                worker=worker,
-            )
-        key = self._submit(task, {sha: self.blob(sha) for sha in answer["needs"]}, worker)
-        self.alone = key if alone else self.alone
+    def _answered(
+        self, task: Task, answer: dict[str, Any], worker: str, alone: bool = False
+    ) -> None:
+        sent = self.delivery.answered(task, answer, worker)
+        if sent is not None:
+            key = self._submit(task, sent, worker)
+            self.alone = key if alone else self.alone
 
-    def _failed(self, task, future, alone):
+    def _failed(self, task: Task, future: Any, alone: bool) -> None:
         try:
             error = future.exception(timeout=clusters.ANSWER_S)
         except Exception:  # whatever a broken connection raises
             self._again(future.key, task)
             return
-        if isinstance(error, self.distributed.KilledWorker):
-            if not alone:
-                self.suspects.append(task)
-                return
-            self._give_up(task)
-        elif isinstance(error, (ImportError, AttributeError)):
-            raise InputError(
-                "studies.worker_without_us",
-                "a worker has not this program, or another version of it: {reason}; install it there, or set PYTHONPATH",
-                reason=" ".join(str(error).split())[:200],
-            )
-        elif isinstance(error, OSError):
-            text = " ".join(str(error).split())[:200]
-            self.taken(broken_off(task["job_hash"], text))
-        elif self.odd[task["job_hash"]] < ODD:
-            self.odd[task["job_hash"]] += 1
-            self.waiting.append(task)
+        if not isinstance(error, self.distributed.KilledWorker):
+            if self.delivery.failed(task, error):
+                self.waiting.append(task)
+        elif alone:
+            self.delivery.given_up(task)
         else:
-            raise error
+            self.suspects.append(task)
 
 
-def broken_off(job_hash, reason):
-    """The record of a run that did not come to an end, for reasons of its own no more than another try might show."""
-    return {
-        "job_hash": job_hash,
-        "status": table.FAILED,
-        "figures": {},
-        "error": reason,
-        "passing": True,
-        "field": None,
-        "seconds": 0.0,
-    }
-
-
-def _versions(held):
-    return ", ".join(f"{name} {version}" for name, version in held.items())
-
-
-def work(task, blobs):
-    """What a worker does: (the answer of ``one.in_worker``, the worker's address)."""
+def work(done_by: DoneBy, task: Task, blobs: Blobs) -> tuple[dict[str, Any], str]:
+    """What a worker does: (the answer of ``done_by``, the worker's address)."""
     from distributed import get_worker
 
     worker = get_worker()
-    return one.in_worker(task, blobs, worker.local_directory), worker.address
+    return done_by(task, blobs, worker.local_directory), worker.address

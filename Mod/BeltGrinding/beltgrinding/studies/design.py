@@ -7,14 +7,21 @@ A distribution-free approach to inducing rank correlation among input variables,
 1982), so that each stratum is still hit once.
 """
 
+from __future__ import annotations
+
 import itertools
-import threading
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
+from ..base.kinds import Array, Context, Floats, Json
 from ..engine import InputError
-from . import vary
+from . import processes, vary
+
+if TYPE_CHECKING:
+    from .kinds import OpenTurns, Quantile
+    from .vary import Variable
 
 MOST_RUNS = 1_000_000
 GRID, INDICES = "grid", "sobol_indices"
@@ -28,19 +35,21 @@ NEEDS = {  # keys of a distribution's kind
 KEYS = {"kind", "lower", "upper"}  # of every distribution
 BOUNDED = ("uniform", "triangular")  # by their own ends
 INSIDE = 1e-12  # a quantile is asked for no nearer to 0 and 1: some are infinite there
-_generator = threading.Lock()  # OpenTURNS has one for the whole process
+
+Rows: TypeAlias = Sequence[tuple[Any, ...]]
 
 
 class Design(NamedTuple):
     """The runs of a study."""
 
-    rows: list  # tuples of values, one of each variable; of PART its number from 0
+    rows: Rows  # tuples of values, one of each variable; of PART its number from 0
     size: int  # runs of one block of sobol_indices; of all others all
     method: str
 
 
-def openturns():
-    """The package. Raises InputError where it is missing."""
+def openturns() -> OpenTurns:
+    """The package, which may only be used in a process of its own (``processes.apart``): each of its calls has Ctrl-C throw a
+    C++ exception, which ends the process. Raises InputError where it is missing."""
     try:
         import openturns
     except ImportError as error:
@@ -52,35 +61,37 @@ def openturns():
     return openturns
 
 
-def design(study, found):
-    """The ``Design`` of a study; ``found``: its [Variable]. Raises InputError."""
-    wanted = study["design"]
+def design(study: Json, found: Sequence[Variable], context: Context = None) -> Design:
+    """The ``Design`` of a study; ``found``: its [Variable]. Raises InputError, Cancelled."""
     matrix = correlations(study, found)
+    if study["design"]["method"] == GRID and not any("distribution" in one.given for one in found):
+        return _grid(found)
+    return processes.apart(_design, study["design"], found, matrix, context=context)
+
+
+def _design(
+    wanted: Json, found: Sequence[Variable], matrix: Floats | None, context: object
+) -> Design:
     if wanted["method"] == GRID:
         return _grid(found)
     quantiles = [quantile(one, f"vary[{k}]") for k, one in enumerate(found)]
-    with _generator:
-        try:
-            cube = _cube(wanted, len(found), matrix)
-        except (
-            TypeError,
-            ValueError,
-            RuntimeError,
-        ) as error:  # as OpenTURNS tells of too many variables
-            raise InputError(
-                "studies.design_refused",
-                "{key}: OpenTURNS makes no such design of {count} variables: {reason}",
-                key="design.method",
-                count=len(found),
-                reason=" ".join(str(error).split())[:200],
-            ) from None
+    try:
+        cube = _cube(wanted, len(found), matrix)
+    except (TypeError, ValueError, RuntimeError) as error:  # as it tells of too many variables
+        raise InputError(
+            "studies.design_refused",
+            "{key}: OpenTURNS makes no such design of {count} variables: {reason}",
+            key="design.method",
+            count=len(found),
+            reason=" ".join(str(error).split())[:200],
+        ) from None
     if len(cube) > MOST_RUNS:
         raise _too_many(len(cube))
     columns = [of(column) for of, column in zip(quantiles, cube.T)]
     return Design(list(zip(*columns)), wanted["runs"], wanted["method"])
 
 
-def _too_many(count):
+def _too_many(count: int) -> InputError:
     return InputError(
         "studies.too_many_runs",
         "the design has {count} runs, more than {most}; take fewer values or steps",
@@ -89,7 +100,7 @@ def _too_many(count):
     )
 
 
-def _cube(wanted, dimension, matrix):
+def _cube(wanted: Json, dimension: int, matrix: Floats | None) -> Floats:
     """(runs, dimension) in [0, 1]."""
     ot = openturns()
     ot.RandomGenerator.SetSeed(wanted["seed"])
@@ -111,7 +122,7 @@ def _cube(wanted, dimension, matrix):
     return _blocks(ot, dimension, runs, wanted["second_order"])
 
 
-def _blocks(ot, dimension, runs, second_order):
+def _blocks(ot: OpenTurns, dimension: int, runs: int, second_order: bool) -> Floats:
     """The blocks of OpenTURNS' SobolIndicesExperiment: A, B, A with each column of B and, of the second order, B with each
     column of A. A and B are a Sobol sequence of twice the dimension, shifted at random: the indices' error is then a
     fraction of what it is with numbers drawn at random."""
@@ -126,7 +137,7 @@ def _blocks(ot, dimension, runs, second_order):
     return np.vstack(blocks)
 
 
-def _exchanged(rows, others):
+def _exchanged(rows: Floats, others: Floats) -> list[Floats]:
     """Copies of ``rows``, each with another column of ``others``."""
     made = []
     for k in range(rows.shape[1]):
@@ -136,11 +147,11 @@ def _exchanged(rows, others):
     return made
 
 
-def _gaussian(ot, matrix):
+def _gaussian(ot: OpenTurns, matrix: Floats) -> OpenTurns:
     return ot.NormalCopula(ot.CorrelationMatrix(len(matrix), matrix.ravel().tolist()))
 
 
-def correlations(study, found):
+def correlations(study: Json, found: Sequence[Variable]) -> Floats | None:
     """(variables, variables), the copula's; None where all are independent. Raises InputError for those that cannot be, and
     for a design that has none."""
     if not study["correlations"]:
@@ -179,7 +190,7 @@ def correlations(study, found):
     return matrix
 
 
-def _check_method(method):
+def _check_method(method: str) -> None:
     """Raises InputError for a design that has no correlations."""
     if method == GRID:
         raise InputError(
@@ -195,7 +206,7 @@ def _check_method(method):
         )
 
 
-def quantile(one, where):
+def quantile(one: Variable, where: str) -> Quantile:
     """A function (n,) in [0, 1] -> list of values of a Variable. Raises InputError."""
     given = one.given
     if "parts" in given:
@@ -204,21 +215,21 @@ def quantile(one, where):
         return _of_list(given["values"], given.get("weights"), where)
     ot = openturns()
     if "range" in given:
-        lower, upper = _ordered(*given["range"], f"{where}.range")
-        law = ot.Uniform(lower, upper)
+        lower, upper = given["range"]
+        law = ot.Uniform(*_ordered(lower, upper, f"{where}.range"))
     else:
         law = distribution(ot, given["distribution"], f"{where}.distribution")
     if "weights" in given:
         raise _needless("weights", where)
 
-    def of(cube):
+    def of(cube: Floats) -> list[float]:
         inside = np.clip(cube, INSIDE, 1.0 - INSIDE)
         return [float(law.computeQuantile(float(u))[0]) for u in inside]
 
     return of
 
 
-def _needless(name, where):
+def _needless(name: str, where: str) -> InputError:
     return InputError(
         "studies.needless_key",
         "{key}: '{name}' says nothing here; leave it out",
@@ -227,7 +238,7 @@ def _needless(name, where):
     )
 
 
-def _of_list(values, weights, where):
+def _of_list(values: Sequence[Any], weights: Sequence[float] | None, where: str) -> Quantile:
     if weights is not None and len(weights) != len(values):
         raise InputError(
             "studies.weights",
@@ -239,13 +250,13 @@ def _of_list(values, weights, where):
     shares = np.ones(len(values)) if weights is None else np.asarray(weights, dtype=float)
     ends = np.cumsum(shares / shares.sum())
 
-    def of(cube):
+    def of(cube: Array) -> list[Any]:
         return [values[k] for k in np.minimum(np.searchsorted(ends, cube, "right"), len(ends) - 1)]
 
     return of
 
 
-def _ordered(lower, upper, where):
+def _ordered(lower: float, upper: float, where: str) -> tuple[float, float]:
     if not lower < upper:
         raise InputError(
             "studies.ends_swapped",
@@ -257,7 +268,7 @@ def _ordered(lower, upper, where):
     return float(lower), float(upper)
 
 
-def distribution(ot, given, where):
+def distribution(ot: OpenTurns, given: Json, where: str) -> OpenTurns:
     """The OpenTURNS distribution of a study's. Raises InputError."""
     kind = given["kind"]
     for name in NEEDS[kind]:
@@ -277,7 +288,7 @@ def distribution(ot, given, where):
     return law if kind in BOUNDED else _cut_off(ot, law, given, where)
 
 
-def _law(ot, given, where):
+def _law(ot: OpenTurns, given: Json, where: str) -> OpenTurns:
     kind = given["kind"]
     if kind == "normal":
         return ot.Normal(float(given["mean"]), float(given["sd"]))
@@ -300,7 +311,7 @@ def _law(ot, given, where):
     return ot.Triangular(*(float(given[name]) for name in ("lower", "mode", "upper")))
 
 
-def _cut_off(ot, law, given, where):
+def _cut_off(ot: OpenTurns, law: OpenTurns, given: Json, where: str) -> OpenTurns:
     """The distribution between its ends, where it has any."""
     ends = [name for name in ("lower", "upper") if name in given]
     if not ends:
@@ -319,7 +330,7 @@ def _cut_off(ot, law, given, where):
     return ot.TruncatedDistribution(law, float(given[ends[0]]), side)
 
 
-def _grid(found):
+def _grid(found: Sequence[Variable]) -> Design:
     columns = [_steps(one, f"vary[{k}]") for k, one in enumerate(found)]
     count = 1
     for column in columns:
@@ -329,7 +340,7 @@ def _grid(found):
     return Design(list(itertools.product(*columns)), count, GRID)
 
 
-def _steps(one, where):
+def _steps(one: Variable, where: str) -> Sequence[Any]:
     """The values of a Variable in a grid."""
     given = one.given
     if "parts" in given:
@@ -343,12 +354,13 @@ def _steps(one, where):
             key=where,
         )
     if "range" in given:
-        return np.linspace(*_ordered(*given["range"], f"{where}.range"), given["steps"]).tolist()
+        lower, upper = _ordered(given["range"][0], given["range"][1], f"{where}.range")
+        return np.linspace(lower, upper, given["steps"]).tolist()
     middles = (np.arange(given["steps"]) + 0.5) / given["steps"]
     return quantile(one, where)(middles)
 
 
-def meta(study, made, names):
+def meta(study: Json, made: Design, names: list[str]) -> dict[str, Any]:
     """What is needed to evaluate the design, as design.json has it."""
     wanted = study["design"]
     return {
@@ -361,7 +373,7 @@ def meta(study, made, names):
     }
 
 
-def part_column(found, rows, names):
+def part_column(found: Sequence[Variable], rows: Rows, names: Sequence[str]) -> Rows:
     """``rows`` with the names of the parts in place of their numbers."""
     at = [k for k, one in enumerate(found) if one.key == vary.PART]
     if not at:

@@ -1,9 +1,17 @@
 """Main effects: a figure's mean over the range of each variable, and the coefficients of a linear regression."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
+from ..base.kinds import Array, Floats
 from . import resampling
 from .share import CONFIDENCE
+
+if TYPE_CHECKING:
+    from .kinds import Variables
 
 MOST_LEVELS = 8  # different values, up to which each is a level of its own
 LEVELS = 6  # else
@@ -11,7 +19,7 @@ RUNS_A_LEVEL = 5  # at least
 SAME = 1e-12  # relative: a figure that differs less is the same in all runs
 
 
-def levels(values):
+def levels(values: Array) -> tuple[Array, list[tuple[Any, Any]]]:
     """How a variable's values fall into levels: (number (n,) int, [(from, to)]). Few different values are a level each,
     others fall into levels of equal counts; text is never ordered: its levels are (text, text)."""
     if values.dtype.kind not in "fiu":
@@ -29,12 +37,17 @@ def levels(values):
     return number, [(float(one.min()), float(one.max())) for one in ends]
 
 
-def is_constant(figure):
+def is_constant(figure: Array) -> bool:
     """Whether a figure (n,) is the same in all runs, as far as doubles tell."""
     return len(figure) == 0 or np.ptp(figure) <= SAME * max(np.abs(figure).max(), 1e-300)
 
 
-def main_effects(variables, figure, drawn=None, confidence=CONFIDENCE):
+def main_effects(
+    variables: Variables,
+    figure: Floats,
+    drawn: Floats | None = None,
+    confidence: float = CONFIDENCE,
+) -> list[dict[str, Any]]:
     """What each variable does to a figure, on average over the others.
 
     ``variables``: {name: (n,) numbers or text}; ``figure``: (n,) finite; ``drawn``: as ``resampling.counts``, None where
@@ -79,7 +92,12 @@ def main_effects(variables, figure, drawn=None, confidence=CONFIDENCE):
     return found
 
 
-def regression(variables, figure, drawn=None, confidence=CONFIDENCE):
+def regression(
+    variables: Variables,
+    figure: Floats,
+    drawn: Floats | None = None,
+    confidence: float = CONFIDENCE,
+) -> dict[str, Any] | None:
     """Linear regression on all variables with numbers: dict(r2, rows [dict(variable, coefficient, low, high)]), of the
     standardised coefficients: by how many of its standard deviations the figure changes with one of the variable.
     None where the runs do not determine them: too few, or variables that are not independent of each other.
@@ -113,7 +131,7 @@ def regression(variables, figure, drawn=None, confidence=CONFIDENCE):
     }
 
 
-def _drawn(given, wanted, drawn):
+def _drawn(given: Floats, wanted: Floats, drawn: Floats) -> Floats:
     """(samples, variables) standardised coefficients of each bootstrap sample, by its moments."""
     columns = np.column_stack([given, wanted])
     size = columns.shape[1]
@@ -128,6 +146,6 @@ def _drawn(given, wanted, drawn):
     return np.linalg.solve(inner, correlation[:, :-1, -1:])[:, :, 0]
 
 
-def _number(value):
+def _number(value: float) -> float | None:
     """For JSON: None where it is not known."""
     return float(value) if np.isfinite(value) else None

@@ -5,9 +5,17 @@ where the verdict has none, in summary.json (``process_time_s``, ``deviation_mm.
 the computer are none: a run gives the same figures wherever it is made.
 """
 
-import math
+from __future__ import annotations
 
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from ..base.kinds import Json, known
 from ..engine import core
+
+if TYPE_CHECKING:
+    from ..simulation.result import Result
 
 USUAL = """
     overall
@@ -48,9 +56,9 @@ LEFT_OUT = ("format", "tolerance_mm", "point_mm", "versions", "wall_time_s", "in
 REST = "rest"  # the zone of all that lies in none
 
 
-def of_result(result):
+def of_result(result: Result) -> dict[str, Any]:
     """{name: number, text, bool or None} of a ``simulation.result.Result`` with its verdict."""
-    summary, verdict = result.summary, result.verdict
+    summary, verdict = result.summary, known(result.verdict)
     found = dict(_flat(verdict))
     for zone in verdict["zones"]:
         found.update(_flat(zone, f"zones.{REST if zone['name'] is None else zone['name']}."))
@@ -58,10 +66,11 @@ def of_result(result):
         found.update(_flat(face, f"faces.{face['face']}."))
     for name, value in _flat(summary):
         found.setdefault(name, value)
+    found.update(peak_pressure_MPa=0.0, peak_force_N=0.0)
     steps = result.steps
-    pressed = steps is not None and len(steps["time"]) > 0
-    found["peak_pressure_MPa"] = float(steps["peak_pressure"].max()) if pressed else 0.0
-    found["peak_force_N"] = float(steps["force"].max()) if pressed else 0.0
+    if steps is not None and len(steps["time"]) > 0:
+        found["peak_pressure_MPa"] = float(steps["peak_pressure"].max())
+        found["peak_force_N"] = float(steps["force"].max())
     counts = summary["events"]
     for kind in core.event_kinds():
         found[f"events.{kind['code']}"] = counts.get(kind["code"], 0)
@@ -69,7 +78,7 @@ def of_result(result):
     return {name: _plain(value) for name, value in found.items()}
 
 
-def usual(job):
+def usual(job: Json) -> list[str]:
     """Names of the columns of a table, for a validated job: ``USUAL``, and what its heat, its finish and its zones have."""
     more = (*(OF_HEAT if "heat" in job else ()), *(OF_FINISH if "finish" in job else ()))
     found = [*USUAL, *more]
@@ -80,7 +89,7 @@ def usual(job):
     return found
 
 
-def _flat(held, before=""):
+def _flat(held: Json, before: str = "") -> Iterator[tuple[str, Any]]:
     for name, value in held.items():
         if name in LEFT_OUT or isinstance(value, (list, tuple)):
             continue
@@ -90,7 +99,7 @@ def _flat(held, before=""):
             yield f"{before}{name}", value
 
 
-def _plain(value):
+def _plain(value: Any) -> Any:
     """As JSON has it: what is not finite is nothing."""
     if hasattr(value, "item"):  # numpy's
         value = value.item()

@@ -1,5 +1,14 @@
 """What a figure of a table is called where people read it."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ..base.kinds import Json
+
+if TYPE_CHECKING:
+    from ..reporting.language import Language
+
 NAMES = {
     "overall": "whole part",
     "in_share": "area in tolerance, share",
@@ -42,7 +51,7 @@ OF_ZONE = {
 }
 
 
-def figure(name, words):
+def figure(name: str, words: Language) -> str:
     """The name of a figure in the words of a ``reporting.language.Language``; its column where it has no other."""
     if name in NAMES:
         return words(NAMES[name])
@@ -55,7 +64,7 @@ def figure(name, words):
     return name
 
 
-def yielded(one, words):
+def yielded(one: Json, words: Language) -> str:
     """What an entry of the yield is about."""
     if one["of"] == "zone":
         return words("zone {zone}", zone=one["name"])

@@ -1,12 +1,21 @@
 """Forces of the programs' own, which a varied force of the belt machine does not change."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from ..base.kinds import Facts, Json
 from ..engine import InputError, core
 from ..job import poses
+
+if TYPE_CHECKING:
+    from .vary import Variable
 
 KEY = "belt_machine.force_N"
 
 
-def told(variables, job):
+def told(variables: Sequence[Variable], job: Json) -> Facts:
     """Facts for a study's variables (``vary.variables``) and its job: where a program has forces of its own at some of its
     poses, as on the ramps of raster paths. Programs that cannot be read are left to the runs."""
     keys = [getattr(variable.key, "text", None) for variable in variables]  # of a part: none

@@ -1,11 +1,16 @@
 """The report of a study: its answers and their pictures in one HTML file, and beside it as files."""
 
+from __future__ import annotations
+
 import re
+from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..base.files import cannot_be_written, json_bytes, write_whole
+from ..base.kinds import Context, Json
 from ..base.messages import sentence
 from ..base.resources import resources
 from ..engine import core
@@ -15,6 +20,10 @@ from ..reporting.layout import facts, section, table as html_table, whole_page
 from ..reporting.markup import data_uri, element
 from . import answers as answering, charts, checking, names
 from .making import Study
+
+if TYPE_CHECKING:
+    from .kinds import Pictures
+    from .table import Table
 
 ANSWERS = "answers.json"
 REPORT = "report.html"
@@ -30,7 +39,9 @@ METHODS = {
 }
 
 
-def write_answers(folder, language="en", context=None, study=None):
+def write_answers(
+    folder: Path | str, language: str = "en", context: Context = None, study: Study | None = None
+) -> dict[str, Any]:
     """Writes a study's answers into its folder: answers.json, report.html and pictures/*.png. ``language``: "en" or "de";
     ``study``: the ``Study`` of the folder, read from it if None. Returns the answers. Raises InputError, Cancelled.
     """
@@ -55,11 +66,14 @@ def write_answers(folder, language="en", context=None, study=None):
     return found
 
 
-def draw(found, table, words, dpi=PRINT_DPI, context=None):
+def draw(
+    found: Json, table: Table, words: Language, dpi: float = PRINT_DPI, context: Context = None
+) -> dict[str, bytes]:
     """{file name: bytes of a PNG}: yield.png, matrix.png and of each figure FIGURE-tornado.png, -effects.png,
     -scatter.png, -sobol.png, as far as there is something to draw."""
-    made, kinds = {}, ("tornado", "effects", "scatter", "sobol")
-    wanted = [("yield", "yield", None)]
+    made: dict[str, bytes] = {}
+    kinds = ("tornado", "effects", "scatter", "sobol")
+    wanted: list[tuple[str, str, str | None]] = [("yield", "yield", None)]
     for name in found["figures"]:
         wanted += [(f"{file_stem(name)}-{kind}", kind, name) for kind in kinds]
     for stem, kind, name in [*wanted, ("matrix", "matrix", None)]:
@@ -71,7 +85,9 @@ def draw(found, table, words, dpi=PRINT_DPI, context=None):
     return made
 
 
-def one(found, table, kind, name, words, dpi=PRINT_DPI):
+def one(
+    found: Json, table: Table, kind: str, name: str | None, words: Language, dpi: float = PRINT_DPI
+) -> bytes | None:
     """Bytes of a PNG: a chart ("yield", "matrix"; "tornado", "effects", "scatter", "sobol" of the figure ``name``) of the
     answers; None where there is nothing to draw."""
     done = np.flatnonzero(table.done)
@@ -99,12 +115,12 @@ def one(found, table, kind, name, words, dpi=PRINT_DPI):
     return drawn(told["effects"], told["mean"], text, words, dpi)
 
 
-def file_stem(name):
+def file_stem(name: str) -> str:
     """A figure's name as the beginning of a file's."""
     return re.sub(r"[^A-Za-z0-9_.-]+", "_", name)
 
 
-def document(found, study, pictures, words):
+def document(found: Json, study: Json, pictures: Pictures, words: Language) -> str:
     """The whole HTML text. ``study``: with its job; ``pictures``: of ``draw``."""
     title = words("Belt grinding: study of {part}", part=part_name(study["job"]))
     style = (resources() / "report" / "report.css").read_text(encoding="utf-8")
@@ -121,7 +137,7 @@ def document(found, study, pictures, words):
     return whole_page(title, style, element("main", body), words.code)
 
 
-def _head(found, title, words):
+def _head(found: Json, title: str, words: Language) -> list[Any]:
     runs, whole = found["runs"], next((o for o in found["yield"] if o["of"] == "overall"), None)
     tiles = [
         (words.whole(runs["done"]), words("runs with figures")),
@@ -145,13 +161,13 @@ def _head(found, title, words):
     ]
 
 
-def _picture(pictures, name, alt):
+def _picture(pictures: Pictures, name: str, alt: str) -> Any:
     if name not in pictures:
         return None
     return element("img", src=data_uri(pictures[name], "image/png"), alt=alt)
 
 
-def _yield(found, pictures, words):
+def _yield(found: Json, pictures: Pictures, words: Language) -> Any:
     if not found["yield"]:
         return None
     rows = [
@@ -184,13 +200,15 @@ def _yield(found, pictures, words):
     )
 
 
-def _interval(one, shown, low="low", high="high"):
+def _interval(
+    one: Json, shown: Callable[[float], str], low: str = "low", high: str = "high"
+) -> str:
     if one[low] is None:
         return DASH
     return f"{shown(one[low])} … {shown(one[high])}"
 
 
-def _best(found, words):
+def _best(found: Json, words: Language) -> Any:
     best = found.get("best")
     if best is None:
         return None
@@ -241,7 +259,7 @@ def _best(found, words):
     return section(words("The best setting"), said, _surface(best, words))
 
 
-def _surface(best, words):
+def _surface(best: Json, words: Language) -> Any:
     if "surface" not in best:
         return None
     said = best["surface"]
@@ -293,16 +311,16 @@ def _surface(best, words):
     ]
 
 
-def _end(value, words):
+def _end(value: float | None, words: Language) -> str:
     return DASH if value is None else words.figures(value)
 
 
-def _text(value, words):
+def _text(value: Any, words: Language) -> str:
     number = isinstance(value, (int, float)) and not isinstance(value, bool)
     return words.figures(value, 5) if number else str(value)
 
 
-def _figure(name, one, pictures, words):
+def _figure(name: str, one: Json, pictures: Pictures, words: Language) -> Any:
     stem, text = file_stem(name), names.figure(name, words)
     heads = [
         (words("what varies"), "name"),
@@ -356,7 +374,7 @@ def _figure(name, one, pictures, words):
     )
 
 
-def _sobol(found, stem, pictures, words):
+def _sobol(found: Json, stem: str, pictures: Pictures, words: Language) -> list[Any]:
     said = []
     for key in ("reason", "doubt"):
         if key in found:
@@ -398,7 +416,7 @@ def _sobol(found, stem, pictures, words):
     return said
 
 
-def _pairs(found, words):
+def _pairs(found: Json, words: Language) -> Any:
     """Indices of the second order, the largest first."""
     named = found["variables"]
     pairs = [(i, j) for i in range(len(named)) for j in range(i)]
@@ -411,12 +429,12 @@ def _pairs(found, words):
     return html_table(heads, rows)
 
 
-def _matrix(pictures, words):
+def _matrix(pictures: Pictures, words: Language) -> Any:
     picture = _picture(pictures, "matrix.png", words("Each against each other"))
     return None if picture is None else section(words("Each against each other"), picture)
 
 
-def _runs(found, study, words):
+def _runs(found: Json, study: Json, words: Language) -> Any:
     rows = []
     for one in study["vary"]:
         name = one.get("name", one["key"])
@@ -437,7 +455,7 @@ def _runs(found, study, words):
     return section(words("What was run"), facts(design), html_table(heads, rows))
 
 
-def _given(one, words):
+def _given(one: Json, words: Language) -> str:
     if "parts" in one:
         return words("{count} parts", count=len(one["parts"]))
     if "values" in one:
@@ -451,7 +469,7 @@ def _given(one, words):
     return f"{given['kind']}: {values}"
 
 
-def _failed(found, words):
+def _failed(found: Json, words: Language) -> Any:
     if not found["runs"]["errors"]:
         return None
     rows = [

@@ -1,6 +1,10 @@
 """The bootstrap: how often each run is drawn in each of many samples with replacement (Efron and Tibshirani 1993)."""
 
+from __future__ import annotations
+
 import numpy as np
+
+from ..base.kinds import Array, Floats
 
 SAMPLES = 500
 MOST_CELLS = 20_000_000  # of the matrix of counts; fewer samples for very many runs
@@ -8,7 +12,7 @@ LEAST_SAMPLES = 100
 SEED = 1
 
 
-def counts(runs, groups=None, samples=SAMPLES):
+def counts(runs: int, groups: Array | None = None, samples: int = SAMPLES) -> Floats:
     """(samples, runs) float: how often each of ``runs`` runs is drawn. ``groups``: (runs,) int; the runs of a group are
     drawn together, since they are not independent. The same for the same numbers."""
     groups = np.arange(runs) if groups is None else np.unique(groups, return_inverse=True)[1]
@@ -18,7 +22,7 @@ def counts(runs, groups=None, samples=SAMPLES):
     return drawn[:, groups].astype(float)
 
 
-def interval(values, confidence):
+def interval(values: Array, confidence: float) -> tuple[Floats, Floats]:
     """(low, high) (...,): the percentiles of ``values`` (samples, ...) that enclose the confidence; NaN is left out."""
     rest = 50.0 * (1.0 - confidence)
     some = np.isfinite(values).any(axis=0)

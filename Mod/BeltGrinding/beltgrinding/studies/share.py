@@ -1,12 +1,18 @@
 """The tolerance yield: the share of runs that pass, and how sure it is."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Sequence
 from statistics import NormalDist
+from typing import Any
 
 CONFIDENCE = 0.95
 
 
-def wilson(passed, count, confidence=CONFIDENCE):
+def wilson(
+    passed: int, count: int, confidence: float = CONFIDENCE
+) -> tuple[float, float] | tuple[None, None]:
     """(low, high): the score interval of a share of ``passed`` among ``count`` independent runs (Wilson 1927,
     J. Am. Stat. Assoc. 22:209). Both None without runs."""
     if not count:
@@ -20,7 +26,7 @@ def wilson(passed, count, confidence=CONFIDENCE):
     return low, high
 
 
-def of(verdicts, random, confidence=CONFIDENCE):
+def of(verdicts: Sequence[str], random: bool, confidence: float = CONFIDENCE) -> dict[str, Any]:
     """The yield of ``verdicts`` ("pass", "fail" or "unknown" each): dict(passed, failed, unknown, count, share, low,
     high). What is not known has not passed. ``random``: the runs are a sample; else there is no interval.
     """

@@ -5,22 +5,27 @@ that the study reads. The next ``beltgrind study`` in that folder collects what 
 the table; ``beltgrind sort`` the same.
 """
 
+from __future__ import annotations
+
 import os
 import shlex
 import shutil
 import subprocess
+from collections.abc import Sequence
 from pathlib import Path
 
 from ..base.files import cannot_be_written, write_whole
 from ..engine import InputError, core
-from . import clusters
+from . import processes
 
 FOLDER = "slurm"
 MOST = 100_000  # jobs of an array
 SUBMIT_S = 60.0  # for sbatch to answer
 
 
-def write(folder, jobs, command, options=()):
+def write(
+    folder: Path | str, jobs: int, command: Sequence[object], options: Sequence[str] = ()
+) -> Path:
     """Writes the script of an array of so many ``jobs`` into ``folder``, with further ``options`` of sbatch, such as
     --time=02:00:00. ``command``: the words after ``beltgrind``, which take --chunk; the first, study or sort, names the
     script. Returns its path. Raises InputError."""
@@ -49,10 +54,10 @@ def write(folder, jobs, command, options=()):
     return path
 
 
-def _text(place, jobs, command, options):
+def _text(place: Path, jobs: int, command: Sequence[object], options: Sequence[str]) -> str:
     package = Path(__file__).resolve().parents[2]
     places = [str(package), str(Path(core.__file__).resolve().parent)]
-    words = [clusters.python(), "-m", "beltgrinding", *map(str, command)]
+    words = [processes.python(), "-m", "beltgrinding", *map(str, command)]
     words += ["--workers", "0", "--quiet", "--chunk"]
     lines = [
         "#!/bin/bash",
@@ -63,13 +68,15 @@ def _text(place, jobs, command, options):
         f"#SBATCH --output={shlex.quote(str(place))}/%A_%a.log",
         *(f"#SBATCH {option}" for option in options),
         f"export PYTHONPATH={shlex.quote(os.pathsep.join(places))}${{PYTHONPATH:+:$PYTHONPATH}}",
-        *(f"export {name}=1" for name in clusters.ONE_THREAD),
+        # The folder that the script is submitted from may be anybody's: Python imports nothing from it.
+        "export PYTHONSAFEPATH=1",
+        *(f"export {name}=1" for name in processes.ONE_THREAD),
         f'exec {shlex.join(words)} "$SLURM_ARRAY_TASK_ID/{jobs}"',
     ]
     return "\n".join(lines) + "\n"
 
 
-def submit(path):
+def submit(path: Path) -> str:
     """Hands the script to sbatch; what it says. Raises InputError."""
     program = shutil.which("sbatch")
     if program is None:
@@ -89,7 +96,7 @@ def submit(path):
     return " ".join(done.stdout.split())
 
 
-def _refused(path, said):
+def _refused(path: Path, said: str) -> InputError:
     return InputError(
         "studies.sbatch_refused",
         "{file}: sbatch does not take it: {reason}",

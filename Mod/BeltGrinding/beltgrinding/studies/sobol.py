@@ -1,11 +1,20 @@
 """Sobol indices: which share of a figure's variance each variable causes alone (first order), and with all others
 (total). They are defined for independent variables only."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
+from ..base.kinds import Array, Floats
 from . import design
 from .effects import is_constant
 from .share import CONFIDENCE
+
+if TYPE_CHECKING:
+    from .kinds import OpenTurns
 
 BOOTSTRAP = 300
 LEAST = 16  # rows of a block
@@ -17,15 +26,20 @@ ESTIMATORS = {  # of OpenTURNS
 }
 
 
-def whole_rows(good, size):
+def whole_rows(good: Array, size: int) -> Array:
     """(size,) bool: the rows of a design of blocks of ``size`` runs that are there in every block. ``good``: (n,) bool,
     the runs that did not fail; a row that lacks a run in one block is of no use in the others."""
     return np.asarray(good, dtype=bool).reshape(-1, size).all(axis=0)
 
 
 def of_blocks(
-    inputs, figure, size, estimator="martinez", confidence=CONFIDENCE, second_order=False
-):
+    inputs: Floats,
+    figure: Floats,
+    size: int,
+    estimator: str = "martinez",
+    confidence: float = CONFIDENCE,
+    second_order: bool = False,
+) -> dict[str, Any] | None:
     """Indices from a design of blocks (A, B, and B or A with one column of the other for each variable), as
     OpenTURNS' SobolIndicesExperiment makes it.
 
@@ -54,6 +68,6 @@ def of_blocks(
     return told
 
 
-def _rows(values, interval):
+def _rows(values: Iterable[float], interval: OpenTurns) -> list[list[float]]:
     bounds = interval.getLowerBound(), interval.getUpperBound()
     return [[float(x) for x in row] for row in zip(values, *bounds)]

@@ -5,22 +5,30 @@ What is found of a part is kept as a study keeps its runs, and is not found agai
 elsewhere need the scans, the job's files and the folder under the same paths.
 """
 
+from __future__ import annotations
+
 import hashlib
 import os
 import time
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
 from ..base.files import cannot_be_written, write_whole
+from ..base.kinds import Context, Json, known
 from ..engine import InputError, core
 from ..job import inputs
 from ..planning import apply, rounds as plans
-from . import casting, cluster, clusters, one, slurm, store, table
-from .casting import PASSES, PLANNED, SCRAP, SORTS, UNKNOWN, reason  # noqa: F401
+from . import casting, one, places, slurm, store, table
+from .casting import PLANNED, UNKNOWN
 from .hashes import Hashes
 from .making import cores
+
+if TYPE_CHECKING:
+    from .kinds import Blobs, Record, Run, Task
+    from .clusters import Tls
 
 FORMAT = 1  # of what is kept of a part
 TABLE = "parts.csv"
@@ -40,11 +48,15 @@ COLUMNS = (
     "plan",
 )
 
+Named: TypeAlias = list[tuple[str, Path]]
+
 
 class Batch(NamedTuple):
     """What was sorted."""
 
-    parts: list  # dicts with ``COLUMNS`` (``plan``: its folder), ``shares`` and ``reason_facts``, in the order that was given
+    parts: list[
+        dict[str, Any]
+    ]  # dicts with ``COLUMNS`` (``plan``: its folder), ``shares`` and ``reason_facts``, in the order that was given
     table: table.Table  # ``plan``: the folder's name
     reused: int  # parts that were there already
 
@@ -56,30 +68,31 @@ class Progress(NamedTuple):
     done: int
     reused: int  # of them, there already
     seconds: float
-    left_s: float  # None: not known yet
+    left_s: float | None  # None: not known yet
     workers: int  # processes that sort
 
 
 def sort(
-    job,
-    scans,
-    folder=None,
-    settings=None,
-    share=1.0,
-    options=None,
-    workers=None,
-    context=None,
-    told=None,
-    scheduler=None,
-    again=False,
-    chunk=None,
-):
+    job: Json,
+    scans: Iterable[Path | str],
+    folder: Path | str | None = None,
+    settings: Json | None = None,
+    share: float = 1.0,
+    options: Json | None = None,
+    workers: int | None = None,
+    context: Context = None,
+    told: Callable[[Progress], object] | None = None,
+    scheduler: str | None = None,
+    again: bool = False,
+    chunk: tuple[int, int] | None = None,
+    tls: Tls | None = None,
+) -> Batch:
     """Sorts parts by their scans, meshes of the raw parts. Returns a ``Batch``.
 
     ``job``: validated; ``scans``: paths; ``folder``: for parts.csv, for what is kept of each part, and of each that needs one its
     plan in a folder of its name; ``settings``: of the plans (Resources/schema/plan.schema.json); ``share``: of the area that must
     be in tolerance, 1: the verdict must be pass; ``options``: as ``scan.stock.as_stock`` takes them; ``workers``: processes, by
-    default one a core, 0: none; ``scheduler``: the address of a Dask scheduler whose workers sort; ``again``: also what is
+    default one a core, 0: none; ``scheduler``, ``tls``: the address of a Dask scheduler whose workers sort, and its key, as ``places.runner`` takes them; ``again``: also what is
     there already; ``chunk``: (I, N): only every Nth part, from the Ith, and no table. Raises InputError, Cancelled; what is found
     by then stays in ``folder``. A part that fails by itself is told in its row.
     """
@@ -95,8 +108,7 @@ def sort(
     if work.open and scheduler is None and (workers == 0 or len(batch.tasks) < 2):
         work.here()
     elif work.open:
-        count = min(workers or cores(), len(work.open))
-        work.on(clusters.There(scheduler) if scheduler else clusters.Local(count))
+        work.on(places.runner(scheduler, tls, min(workers or cores(), len(work.open))))
     found = work.batch()
     if folder is not None and chunk is None:
         _write(Path(folder, TABLE), found.table.csv_bytes())
@@ -106,7 +118,15 @@ def sort(
 class Tasks:
     """The parts of a batch as tasks, each known by the hash of what its row depends on. Raises InputError."""
 
-    def __init__(self, job, scans, folder, settings, share, options):
+    def __init__(
+        self,
+        job: Json,
+        scans: Iterable[Path | str],
+        folder: Path | str | None,
+        settings: Json,
+        share: float,
+        options: Json,
+    ) -> None:
         named = _named(scans)
         self.folder = None if folder is None else Path(os.path.abspath(folder))
         if self.folder is not None:
@@ -114,7 +134,7 @@ class Tasks:
         hashes = Hashes([job])
         files = [[str(path), sha] for _, path, sha in hashes.files(job)]
         common = [FORMAT, hashes.job(job), settings, share, _plain(options)]
-        self.tasks = []
+        self.tasks: list[dict[str, Any]] = []
         for name, path in named:
             scan = os.path.abspath(path)
             sha = inputs.file_digest("", scan)["sha256"]
@@ -135,13 +155,13 @@ class Tasks:
                 }
             )
 
-    def chunk(self, first, step):
+    def chunk(self, first: int, step: int) -> Tasks:
         """Every ``step``-th from the ``first``, counted from 1."""
         self.tasks = self.tasks[first - 1 :: step]
         return self
 
 
-def _plain(value):
+def _plain(value: Any) -> Any:
     """Options as plain data."""
     if isinstance(value, dict):
         return {name: _plain(one_) for name, one_ in value.items()}
@@ -153,10 +173,17 @@ def _plain(value):
 class _Work:
     """What is to be sorted."""
 
-    def __init__(self, batch, again, context, told):
+    def __init__(
+        self,
+        batch: Tasks,
+        again: bool,
+        context: core.RunContext,
+        told: Callable[[Progress], object] | None,
+    ) -> None:
         self.tasks, self.context, self.told = batch.tasks, context, told
         self.kept = None if batch.folder is None else store.Store(batch.folder / KEPT)
-        self.rows, self.open = {}, {}  # by hash
+        self.rows: dict[str, dict[str, Any]] = {}  # by hash
+        self.open: dict[str, Task] = {}
         for task in self.tasks:
             row = None if again or self.kept is None else self._there(task)
             if row is None:
@@ -165,16 +192,16 @@ class _Work:
                 self.rows[task["job_hash"]] = row
         self.reused, self.workers, self.begun = len(self.rows), 0, time.monotonic()
 
-    def _there(self, task):
+    def _there(self, task: Task) -> dict[str, Any] | None:
         """The figures of a part that are kept; None where there are none, or its plan is gone."""
-        record = self.kept.read(task["job_hash"])
+        record = known(self.kept).read(task["job_hash"])
         row = record and record["figures"]
         if not row or not set(casting.FIGURES) <= set(row):
             return None
         planned = row["sorted"] == PLANNED
         return None if planned and not Path(task["folder"], apply.PLAN).exists() else row
 
-    def here(self):
+    def here(self) -> None:
         """One after the other, in this process."""
         self.workers, count = 1, len(self.tasks)
         for number, task in enumerate(list(self.open.values()), self.reused):
@@ -182,16 +209,16 @@ class _Work:
             part = self.context.part(number / count, (number + 1) / count)
             self.take(_record(task, casting.one_part(task, part)))
 
-    def on(self, where):
-        """On the workers of a cluster."""
+    def on(self, run: Run) -> None:
+        """On other processes; ``run``: as ``pool.run`` with its first argument."""
 
-        def workers(count):
+        def workers(count: int) -> None:
             self.workers = count
 
         tasks = list(self.open.values())
-        cluster.run(where, tasks, None, self.take, self.context, workers, work)
+        run(tasks, None, self.take, self.context, workers, in_worker)
 
-    def take(self, record):
+    def take(self, record: Record) -> None:
         """A part is sorted."""
         task = self.open.pop(record["job_hash"], None)
         if task is None:  # a second answer
@@ -209,7 +236,7 @@ class _Work:
             count = len(self.tasks), len(self.rows), self.reused
             self.told(Progress(*count, seconds, seconds / made * len(self.open), self.workers))
 
-    def batch(self):
+    def batch(self) -> Batch:
         """The ``Batch`` of all, in their order."""
         parts = []
         for task in self.tasks:
@@ -221,9 +248,9 @@ class _Work:
         return Batch(parts, table.Table(columns), self.reused)
 
 
-def _named(scans):
+def _named(scans: Iterable[Path | str]) -> Named:
     """[(name, path)]: a folder stands for the meshes in it. Raises InputError where there are none."""
-    paths = []
+    paths: list[Path] = []
     for scan in scans:
         path = Path(scan)
         if path.is_dir():
@@ -236,7 +263,8 @@ def _named(scans):
             "studies.no_scans",
             "there is nothing to sort: give scans (.stl, .ply, .obj) or a folder",
         )
-    found, taken = [], set(OWN)
+    found: Named = []
+    taken = set(OWN)
     for path in paths:
         name, number = path.stem, 1
         while name.lower() in taken:
@@ -247,7 +275,7 @@ def _named(scans):
     return found
 
 
-def _check(job, named, folder):
+def _check(job: Json, named: Named, folder: Path) -> None:
     """Raises InputError where a result would be written over what is read."""
     read = {os.path.realpath(path) for path in [*inputs.files(job), *(p for _, p in named)]}
     for path in (folder / TABLE, *(folder / name for name, _ in named)):
@@ -261,7 +289,7 @@ def _check(job, named, folder):
         apply.check(job, folder / name, read)
 
 
-def _record(task, row):
+def _record(task: Task, row: dict[str, Any]) -> Record:
     """What is kept of a part. One that could not be judged is tried again the next time."""
     failed = row.pop("failed")
     return {
@@ -275,16 +303,10 @@ def _record(task, row):
     }
 
 
-def work(task, blobs):
-    """What a worker does: (a record, or what ``cluster`` knows as an answer, the worker's address)."""
-    from distributed import get_worker
-
-    return in_worker(task), get_worker().address
-
-
-def in_worker(task):
+def in_worker(task: Task, blobs: Blobs | None = None, folder: str | None = None) -> dict[str, Any]:
     """The record of a part, by one thread; {"unseen": path} where a file is not there as it was when the task was made,
-    {"versions"} where the engine is another one."""
+    {"versions"} where the engine is another one. ``blobs``, ``folder``: as ``one.in_worker`` has them; nothing is sent.
+    """
     if task["versions"] != core.versions():
         return {"versions": core.versions()}
     for path, sha in task["files"]:
@@ -295,7 +317,7 @@ def in_worker(task):
         return _record(task, casting.one_part(task))
 
 
-def _write(path, data):
+def _write(path: Path, data: bytes) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         write_whole(path, data)

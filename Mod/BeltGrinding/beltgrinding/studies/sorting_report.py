@@ -1,33 +1,42 @@
 """The report of a sorted batch, one HTML file."""
 
+from __future__ import annotations
+
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from ..base import plotting
 from ..base.files import cannot_be_written, write_whole
+from ..base.kinds import Json
 from ..base.plotting import GREEN, GREY, ORANGE, RED
 from ..base.resources import resources
 from ..reporting.facts import part_name
 from ..reporting.language import DASH, Language
 from ..reporting.layout import section, table as html_table, whole_page
 from ..reporting.markup import data_uri, element
-from . import sorting
+from . import casting
+
+if TYPE_CHECKING:
+    from .sorting import Batch
 
 REPORT = "parts.html"
 COLOURS = {
-    sorting.PASSES: GREEN,
-    sorting.PLANNED: ORANGE,
-    sorting.SCRAP: RED,
-    sorting.UNKNOWN: GREY,
+    casting.PASSES: GREEN,
+    casting.PLANNED: ORANGE,
+    casting.SCRAP: RED,
+    casting.UNKNOWN: GREY,
 }
 TEXTS = {
-    sorting.PASSES: "passes",
-    sorting.PLANNED: "passes with this plan",
-    sorting.SCRAP: "scrap",
-    sorting.UNKNOWN: "not known",
+    casting.PASSES: "passes",
+    casting.PLANNED: "passes with this plan",
+    casting.SCRAP: "scrap",
+    casting.UNKNOWN: "not known",
 }
 
 
-def write(folder, batch, job, share=1.0, language="en"):
+def write(
+    folder: Path | str, batch: Batch, job: Json, share: float = 1.0, language: str = "en"
+) -> Path:
     """Writes the report of a ``sorting.Batch`` of a job into the folder; returns its path. Raises InputError."""
     words = Language(language)
     path = Path(folder, REPORT)
@@ -38,12 +47,12 @@ def write(folder, batch, job, share=1.0, language="en"):
     return path
 
 
-def counts(batch):
+def counts(batch: Batch) -> dict[str, int]:
     """{sort: parts}"""
-    return {sort: sum(row["sorted"] == sort for row in batch.parts) for sort in sorting.SORTS}
+    return {sort: sum(row["sorted"] == sort for row in batch.parts) for sort in casting.SORTS}
 
 
-def document(batch, job, share, words):
+def document(batch: Batch, job: Json, share: float, words: Language) -> str:
     """The whole HTML text."""
     title = words("Belt grinding: castings of {part}", part=part_name(job))
     style = (resources() / "report" / "report.css").read_text(encoding="utf-8")
@@ -54,7 +63,7 @@ def document(batch, job, share, words):
             "div", element("b", words.whole(n)), element("span", words(TEXTS[k])), class_="tile"
         )
         for k, n in found.items()
-        if n or k != sorting.UNKNOWN
+        if n or k != casting.UNKNOWN
     ]
     limit = words("A part passes if its verdict is pass.")
     if share < 1.0:
@@ -72,7 +81,7 @@ def document(batch, job, share, words):
     return whole_page(title, style, element("main", element("section", body)), words.code)
 
 
-def _table(batch, words):
+def _table(batch: Batch, words: Language) -> Any:
     heads = [
         (words("part"), "name"),
         (words("sorted"), ""),
@@ -84,9 +93,9 @@ def _table(batch, words):
     rows = []
     for row in batch.parts:
         seconds = (
-            row["planned_time_s"] if row["sorted"] == sorting.PLANNED else row["process_time_s"]
+            row["planned_time_s"] if row["sorted"] == casting.PLANNED else row["process_time_s"]
         )
-        why = sorting.reason(row, words)
+        why = casting.reason(row, words)
         if not row["trusted"]:
             why = "; ".join(filter(None, [why, words("the scan is poorly laid on the design")]))
         rows.append(
@@ -102,7 +111,7 @@ def _table(batch, words):
     return html_table(heads, rows)
 
 
-def picture(batch, words):
+def picture(batch: Batch, words: Language) -> bytes:
     """Bytes of a PNG: the area in tolerance of each part, as the program grinds it and with its plan."""
     parts = batch.parts
     drawn = plotting.figure(7.2, 0.9 + 0.3 * max(len(parts), 2))

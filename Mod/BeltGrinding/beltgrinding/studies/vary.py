@@ -5,12 +5,17 @@ A variable is a key of the job, or an error of place: ``placement.`` of the part
 (axis times angle) in degrees about a point c, p -> c + R (p - c) + t.
 """
 
+from __future__ import annotations
+
 import math
-from typing import NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..base import frames, schemas
+from ..base.kinds import Floats, Json
 from ..engine import InputError
 from ..job import machine
 from . import table
@@ -26,14 +31,15 @@ class Variable(NamedTuple):
     """One thing that varies."""
 
     name: str
-    key: object  # Key; "placement.x_mm" and the like; PART
+    key: Key | str  # "placement.x_mm" and the like; PART
     how: str
-    given: dict  # its entry in the study
+    given: Json  # its entry in the study
 
 
-def variables(study):
+def variables(study: Json) -> list[Variable]:
     """[Variable] of a study that its schema has passed. Raises InputError."""
-    found, names = [], set()
+    found: list[Variable] = []
+    names: set[str] = set()
     for k, given in enumerate(study["vary"]):
         where = f"vary[{k}].key"
         name = given.get("name", given["key"])
@@ -42,7 +48,7 @@ def variables(study):
         kind, _, axis = given["key"].partition(".")
         if given["key"] == PART or "parts" in given:
             _check_part(given, f"vary[{k}]")
-            key = PART
+            key: Key | str = PART
         elif kind in (PLACEMENT, STOCK_PLACEMENT):
             key = _place(given, axis, where)
         else:
@@ -54,7 +60,7 @@ def variables(study):
     return found
 
 
-def _check_name(name, names, where):
+def _check_name(name: str, names: set[str], where: str) -> None:
     if any(ord(c) < 32 for c in name) or name != name.strip():
         raise InputError(
             "studies.bad_name",
@@ -71,7 +77,7 @@ def _check_name(name, names, where):
         )
 
 
-def _check_part(given, where):
+def _check_part(given: Json, where: str) -> None:
     if given["key"] != PART or "parts" not in given:
         raise InputError(
             "studies.parts_and_key",
@@ -82,7 +88,7 @@ def _check_part(given, where):
         raise _only_set(where)
 
 
-def _place(given, axis, where):
+def _place(given: Json, axis: str, where: str) -> str:
     if axis not in AXES:
         from ..base.schema_errors import hint
 
@@ -98,13 +104,13 @@ def _place(given, axis, where):
     return given["key"]
 
 
-def _only_set(where):
+def _only_set(where: str) -> InputError:
     return InputError(
         "studies.only_set", "{key}: how must be 'set' here: it is an error by itself", key=where
     )
 
 
-def _check_numbers(given, where):
+def _check_numbers(given: Json, where: str) -> None:
     """Ranges and distributions, and what is added or multiplied, are numbers."""
     values = given.get("values", ())
     number = "values" not in given or given["how"] != "set" or given["key"].startswith(PLACES)
@@ -120,9 +126,9 @@ def _check_numbers(given, where):
 PLACES = (PLACEMENT + ".", STOCK_PLACEMENT + ".")
 
 
-def _check_twice(found):
+def _check_twice(found: Sequence[Variable]) -> None:
     """Two variables that set the same key would overrule each other."""
-    seen = {}
+    seen: dict[str, str] = {}
     for one in found:
         key = one.key.text if isinstance(one.key, Key) else one.key
         if one.how == "set" and key in seen:
@@ -137,12 +143,12 @@ def _check_twice(found):
             seen[key] = one.name
 
 
-def job_of(job, found, values, placement):
+def job_of(job: Json, found: Sequence[Variable], values: Sequence[Any], placement: Json) -> Json:
     """The job of a run: a copy of a validated ``job``, which shares with it what does not vary. ``found``: [Variable];
     ``values``: theirs, in order; ``placement``: as in the study. Keys are set, with the defaults of what they call for, before
     they are added to and multiplied.
     Raises InputError naming the key."""
-    places = {PLACEMENT: {}, STOCK_PLACEMENT: {}}
+    places: dict[str, dict[str, float]] = {PLACEMENT: {}, STOCK_PLACEMENT: {}}
     for turn in ("set", "add", "multiply"):
         for one, value in zip(found, values):
             if one.how != turn or one.key == PART:
@@ -153,7 +159,7 @@ def job_of(job, found, values, placement):
                 kind, _, axis = one.key.partition(".")
                 places[kind][axis] = float(value)
         if turn == "set":
-            job = _filled(job, {one.key.steps[0] for one in found if isinstance(one.key, Key)})
+            job = _filled(job, {str(one.key.steps[0]) for one in found if isinstance(one.key, Key)})
     if any(places[PLACEMENT].values()):
         job = _misplaced(job, places[PLACEMENT], placement)
     if any(places[STOCK_PLACEMENT].values()):
@@ -161,7 +167,7 @@ def job_of(job, found, values, placement):
     return job
 
 
-def _filled(job, sections):
+def _filled(job: Json, sections: set[str]) -> Json:
     """Defaults of what the job had no need of before: parts of another kind of belt machine, a part of which a value was
     set alone. ``sections``: those that were changed."""
     rules = job_schema()["properties"]
@@ -172,7 +178,7 @@ def _filled(job, sections):
     return job
 
 
-def transform(errors, about):
+def transform(errors: Mapping[str, float], about: ArrayLike) -> Floats:
     """(4, 4) of an error of place: dict of ``AXES`` (missing: 0), turned about a point (3,), mm."""
     turn = np.radians([errors.get(axis, 0.0) for axis in AXES[3:]])
     angle = float(np.linalg.norm(turn))
@@ -185,7 +191,7 @@ def transform(errors, about):
     return rotation
 
 
-def _misplaced(job, errors, placement):
+def _misplaced(job: Json, errors: Mapping[str, float], placement: Json) -> dict[str, Any]:
     """The part, and what is fixed to it, lies elsewhere in what holds it than the program takes for granted."""
     name = OF_HOLDING[job["cell"]["holding"]]
     error = transform(errors, placement["about_mm"])
@@ -194,14 +200,14 @@ def _misplaced(job, errors, placement):
     return {**job, "cell": {**job["cell"], name: frame_data(frame)}}
 
 
-def _stock_misplaced(job, errors, placement):
+def _stock_misplaced(job: Json, errors: Mapping[str, float], placement: Json) -> dict[str, Any]:
     """The stock lies elsewhere against the design; in the design's frame."""
     nominal = frames.from_data(job["stock"].get("placement"))
     frame = transform(errors, placement["about_mm"]) @ nominal
     return {**job, "stock": {**job["stock"], "placement": frame_data(frame)}}
 
 
-def frame_data(frame):
+def frame_data(frame: Floats) -> dict[str, Any]:
     """A (4, 4) as a job has it."""
     return {
         "position_mm": frame[:3, 3].tolist(),

@@ -1,8 +1,15 @@
 """Feeds and forces along the programs, as they were and as planned."""
 
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
 import numpy as np
 
+from ...objects.kinds import DocumentObject
 from ..common.compat import QtCore, QtGui, translate
+from ..common.kinds import Array, Painter, QtEvent
 from ..common.theme import readable, theme
 from .strip_chart import envelope
 
@@ -16,7 +23,7 @@ class FeedChart(QtGui.QWidget):
     """``show_plan(obj)``: a Plan object. Dragging chooses motions: ``chosen`` is (first, last) from 0, or None, and
     ``changed()`` tells."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         super().__init__()
         self.setObjectName("feedChart")
         self.setMouseTracking(True)
@@ -25,7 +32,7 @@ class FeedChart(QtGui.QWidget):
         self.changed = lambda: None
         self.names, self.of, self.lines = [], np.zeros(0, dtype=int), None
 
-    def show_plan(self, obj):
+    def show_plan(self, obj: DocumentObject) -> None:
         """Shows what a Plan object holds."""
         self.along, self.rapid = np.array(obj.Along), np.array(obj.Rapid, dtype=bool)
         self.of, self.chosen = np.array(obj.PathOf, dtype=int), None
@@ -47,12 +54,12 @@ class FeedChart(QtGui.QWidget):
         self.setMinimumHeight(BOTTOM + len(self.rows) * ROW)
         self.update()
 
-    def x(self, along):
+    def x(self, along: Any) -> Any:
         """Pixels of places on the way, mm."""
         whole = max(self.along[-1], 1e-9) if len(self.along) else 1.0
         return LEFT + np.asarray(along) / whole * (self.width() - LEFT - RIGHT)
 
-    def at(self, x):
+    def at(self, x: float) -> int | None:
         """The motion that is drawn there, from 0; None without one."""
         if not len(self.along):
             return None
@@ -60,7 +67,7 @@ class FeedChart(QtGui.QWidget):
         found = np.searchsorted(self.along, np.clip(share, 0.0, 1.0) * self.along[-1])
         return int(min(found, len(self.along) - 1))
 
-    def text(self, k):
+    def text(self, k: int) -> str:
         """What is told of a motion."""
         own = k - int(np.argmax(self.of == self.of[k]))
         told = translate("BeltGrinding", "{}, pose {}").format(self.names[self.of[k]], own + 1)
@@ -73,20 +80,20 @@ class FeedChart(QtGui.QWidget):
             told += f"\n{name}: {old[k]:.4g} → {new[k]:.4g} {unit}"
         return told
 
-    def event(self, event):
+    def event(self, event: QtEvent) -> bool:
         if event.type() == QtCore.QEvent.ToolTip:
             k = self.at(event.pos().x())
             QtGui.QToolTip.showText(event.globalPos(), "" if k is None else self.text(k), self)
             return True
         return super().event(event)
 
-    def mousePressEvent(self, event):
+    def mousePressEvent(self, event: QtEvent) -> None:
         self.begun = self.at(event.pos().x())
         self.chosen = None
         self.changed()
         self.update()
 
-    def mouseMoveEvent(self, event):
+    def mouseMoveEvent(self, event: QtEvent) -> None:
         if event.buttons() & QtCore.Qt.LeftButton and self.begun is not None:
             end = self.at(event.pos().x())
             if end != self.begun:
@@ -94,7 +101,7 @@ class FeedChart(QtGui.QWidget):
                 self.changed()
                 self.update()
 
-    def paintEvent(self, event):
+    def paintEvent(self, event: QtEvent) -> None:
         painter = QtGui.QPainter(self)
         painter.setRenderHint(QtGui.QPainter.Antialiasing)
         painter.fillRect(self.rect(), QtGui.QColor(theme().ground))
@@ -121,10 +128,19 @@ class FeedChart(QtGui.QWidget):
         text = translate("BeltGrinding", "way of the wheel, 0…{:.4g} mm").format(self.along[-1])
         painter.drawText(QtCore.QPointF(LEFT, self.height() - 5), text)
 
-    def _ends(self):
+    def _ends(self) -> tuple[int, int]:
         return self.chosen[0] - 1, self.chosen[1]
 
-    def _draw_row(self, painter, top, height, name, unit, old, new):
+    def _draw_row(
+        self,
+        painter: Painter,
+        top: float,
+        height: float,
+        name: str,
+        unit: str,
+        old: Array,
+        new: Array,
+    ) -> None:
         moving = ~self.rapid
         most = max(float(np.max(np.where(moving, np.maximum(old, new), 0.0))), 1e-9)
         upper, lower = top + TOP, top + height - 4
@@ -143,7 +159,7 @@ class FeedChart(QtGui.QWidget):
                 points = [QtCore.QPointF(LEFT + a, b) for a, b in zip(px.tolist(), py.tolist())]
                 painter.drawPolyline(QtGui.QPolygonF(points))
 
-    def _pieces(self, values):
+    def _pieces(self, values: Array) -> Iterator[tuple[Array, Array]]:
         """(way mm, values) as stairs, one for each row of motions that grind."""
         begin = np.append(0.0, self.along[:-1])
         grinding = np.flatnonzero(~self.rapid & (self.along > begin))

@@ -1,5 +1,7 @@
 """The plot of a cross-section as a widget: wheel zooms, drag pans, double click shows everything."""
 
+from __future__ import annotations
+
 import math
 
 import numpy as np
@@ -7,6 +9,7 @@ import numpy as np
 from ...inspection import section_plot
 from ...objects.preferences import deviation_unit, length_text
 from ..common.compat import QtCore, QtGui, translate
+from ..common.kinds import Array, Colour, Json, Painter, Pen, Polygon, QtEvent, QtPoint, Rectangle
 from ..common.theme import readable, theme
 
 LEFT, RIGHT, TOP, BOTTOM = 64, 12, 28, 40  # pixels around the plot
@@ -24,14 +27,14 @@ LABELS = {  # of section_plot.LOOKS
 class SectionChart(QtGui.QWidget):
     """Draws what ``section_plot.plot`` gives. Data in mm; ``window`` is the part of it that is seen."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         super().__init__()
         self.setObjectName("sectionPlot")
         self.setMinimumSize(320, 160)
         self.setMouseTracking(True)
         self.plot = self.section = self.window = self.hovered = self.dragged = None
 
-    def show_plot(self, section, plot):
+    def show_plot(self, section: Json, plot: Json) -> None:
         """Shows a section; the zoom stays when its kind stays."""
         same = self.plot is not None and plot is not None and self.plot["mode"] == plot["mode"]
         self.section, self.plot, self.hovered = section, plot, None
@@ -39,7 +42,7 @@ class SectionChart(QtGui.QWidget):
             self.fit()
         self.update()
 
-    def fit(self):
+    def fit(self) -> None:
         """Shows everything."""
         self.zoomed = False
         self.window = list(self.plot["bounds"]) if self.plot else None
@@ -47,12 +50,12 @@ class SectionChart(QtGui.QWidget):
 
     # Data and pixels
 
-    def area(self):
+    def area(self) -> Rectangle:
         return QtCore.QRectF(
             LEFT, TOP, max(self.width() - LEFT - RIGHT, 1), max(self.height() - TOP - BOTTOM, 1)
         )
 
-    def scales(self):
+    def scales(self) -> tuple[float, float, float, float]:
         """(x0, y0 of the lower left in mm, pixels per mm in x and y)."""
         x0, y0, x1, y1 = self.window
         area = self.area()
@@ -63,19 +66,19 @@ class SectionChart(QtGui.QWidget):
             y0 = 0.5 * (y0 + y1) - 0.5 * area.height() / y
         return x0, y0, x, y
 
-    def pixels(self, points):
+    def pixels(self, points: Array) -> Array:
         """(n, 2) pixels of (n, 2) mm."""
         x0, y0, x, y = self.scales()
         area = self.area()
         left, bottom = area.left() - x0 * x, area.bottom() + y0 * y
         return np.column_stack([left + points[:, 0] * x, bottom - points[:, 1] * y])
 
-    def _polygon(self, points):
+    def _polygon(self, points: Array) -> Polygon:
         return QtGui.QPolygonF([QtCore.QPointF(x, y) for x, y in self.pixels(points).tolist()])
 
     # Painting
 
-    def paintEvent(self, event):
+    def paintEvent(self, event: QtEvent) -> None:
         painter = QtGui.QPainter(self)
         painter.setRenderHint(QtGui.QPainter.Antialiasing)
         painter.fillRect(self.rect(), QtGui.QColor(theme().ground))
@@ -104,7 +107,7 @@ class SectionChart(QtGui.QWidget):
         self._value(painter)
         painter.end()
 
-    def _grid(self, painter):
+    def _grid(self, painter: Painter) -> None:
         area, (x0, y0, x, y) = self.area(), self.scales()
         width, height = area.width() / x, area.height() / y
         grey, dark = QtGui.QColor(theme().grid), QtGui.QColor(theme().text)
@@ -134,18 +137,18 @@ class SectionChart(QtGui.QWidget):
         painter.setBrush(QtCore.Qt.NoBrush)
         painter.drawRect(area)
 
-    def height_unit(self):
+    def height_unit(self) -> float:
         """What the upright axis counts in, mm: the outline's true shape stays in mm."""
         return deviation_unit().size if self.plot["mode"] == section_plot.UNROLLED else 1.0
 
-    def _x_label(self):
+    def _x_label(self) -> str:
         if self.plot["mode"] == section_plot.UNROLLED:
             text = translate("BeltGrinding", "arc length, mm; upright: height above the design, {}")
             return text.format(deviation_unit().symbol)
         factor = f"{self.plot['exaggeration']:g}"
         return translate("BeltGrinding", "in the plane, mm; heights ×{}").format(factor)
 
-    def _legend(self, painter):
+    def _legend(self, painter: Painter) -> None:
         x, metrics = LEFT, QtGui.QFontMetrics(painter.font())
         for layer in self.plot["layers"]:
             text = LABELS[layer["key"]]
@@ -158,7 +161,7 @@ class SectionChart(QtGui.QWidget):
             painter.drawText(QtCore.QPointF(x + 27, 18), text)
             x += 44 + metrics.boundingRect(text).width()
 
-    def _value(self, painter):
+    def _value(self, painter: Painter) -> None:
         if self.hovered is None:
             return
         piece, k = self.hovered
@@ -180,7 +183,7 @@ class SectionChart(QtGui.QWidget):
         painter.setPen(QtGui.QColor(theme().text))
         painter.drawText(box.adjusted(7, 4, -7, -4), int(QtCore.Qt.AlignLeft), text)
 
-    def value_text(self, piece, k):
+    def value_text(self, piece: Json, k: int) -> str:
         """What the plot says of point ``k`` of a piece."""
         one = self.section["pieces"][piece]
         x, y, z = one["point"][k]
@@ -202,7 +205,7 @@ class SectionChart(QtGui.QWidget):
 
     # Mouse
 
-    def mouseMoveEvent(self, event):
+    def mouseMoveEvent(self, event: QtEvent) -> None:
         if self.plot is None:
             return
         at = _position(event)
@@ -214,27 +217,27 @@ class SectionChart(QtGui.QWidget):
         self.hovered = self.nearest(at.x(), at.y())
         self.update()
 
-    def mousePressEvent(self, event):
+    def mousePressEvent(self, event: QtEvent) -> None:
         self.dragged = _position(event)
 
-    def mouseReleaseEvent(self, event):
+    def mouseReleaseEvent(self, event: QtEvent) -> None:
         self.dragged = None
 
-    def mouseDoubleClickEvent(self, event):
+    def mouseDoubleClickEvent(self, event: QtEvent) -> None:
         self.fit()
 
-    def leaveEvent(self, event):
+    def leaveEvent(self, event: QtEvent) -> None:
         self.hovered = None
         self.update()
 
-    def wheelEvent(self, event):
+    def wheelEvent(self, event: QtEvent) -> None:
         if self.plot is not None:
             at = event.position() if hasattr(event, "position") else event.pos()
             steps = event.angleDelta().y() / 120.0
             self.zoom(ZOOM**-steps, at.x(), at.y())
         event.accept()
 
-    def zoom(self, factor, at_x, at_y):
+    def zoom(self, factor: float, at_x: float, at_y: float) -> None:
         """Makes the seen part ``factor`` times as large, keeping what is at a pixel in its place."""
         area, (x0, y0, x, y) = self.area(), self.scales()
         fx, fy = x0 + (at_x - area.left()) / x, y0 + (area.bottom() - at_y) / y
@@ -245,7 +248,7 @@ class SectionChart(QtGui.QWidget):
             self.zoomed = True
         self.update()
 
-    def nearest(self, x, y):
+    def nearest(self, x: float, y: float) -> tuple[int, int] | None:
         """(piece, point) of the ground profile next to a pixel, or None. Unrolled, the way along the
         section counts alone.
         """
@@ -263,18 +266,18 @@ class SectionChart(QtGui.QWidget):
         return found if best < NEAR else None
 
 
-def _position(event):
+def _position(event: QtEvent) -> QtPoint:
     return event.position() if hasattr(event, "position") else event.pos()
 
 
-def _band(layer):
+def _band(layer: Json) -> Colour:
     """The colour of an area: see-through, the more so on a dark ground."""
     colour = QtGui.QColor(layer["colour"])
     colour.setAlphaF(0.3 if theme().dark else 0.7)
     return colour
 
 
-def _pen(layer):
+def _pen(layer: Json) -> Pen:
     pen = QtGui.QPen(readable(layer["colour"]), layer["width"])
     if layer["dash"]:
         pen.setDashPattern([value / layer["width"] for value in layer["dash"]])

@@ -1,9 +1,15 @@
 """A strip chart: rows of quantities against the time of a simulation, events marked."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
 import numpy as np
 
+from ...objects.kinds import Event
 from ..common import event_texts
 from ..common.compat import QtCore, QtGui, translate
+from ..common.kinds import Array, Painter, QtEvent
 from ..common.theme import readable, theme
 
 ROWS = (  # column of the steps, unit, colour
@@ -19,7 +25,7 @@ GAP = 1e-6  # s between two steps: nothing is ground there
 MARK, CURSOR = "#d98200", "#d32f2f"
 
 
-def texts():
+def texts() -> dict[str, str]:
     """What the columns are called, in the language of the window."""
     return {
         "force": translate("BeltGrinding", "Force"),
@@ -32,7 +38,9 @@ def texts():
 class StripChart(QtGui.QWidget):
     """``chosen(time)`` tells of a click or a drag, in s."""
 
-    def __init__(self, steps, events, duration):
+    def __init__(
+        self, steps: Mapping[str, Array], events: Sequence[Event], duration: float
+    ) -> None:
         super().__init__()
         self.setObjectName("stripChart")
         self.duration = max(duration, 1e-9)
@@ -51,36 +59,36 @@ class StripChart(QtGui.QWidget):
         self.picture = None
         self._arrange()
 
-    def rows(self):
+    def rows(self) -> list[tuple[str, ...]]:
         """The rows that are shown, as in ROWS."""
         return [row for row, action in zip(ROWS, self.menu.actions()) if action.isChecked()]
 
-    def set_time(self, time):
+    def set_time(self, time: float) -> None:
         self.time = time
         self.update()
 
-    def x(self, time):
+    def x(self, time: float) -> float:
         """Pixel of a time."""
         return LEFT + (self.width() - LEFT - RIGHT) * time / self.duration
 
-    def event_near(self, x):
+    def event_near(self, x: float) -> Event | None:
         """The event whose mark is drawn there, or None."""
         near = [(abs(self.x(e["time"]) - x), i) for i, e in enumerate(self.events)]
         distance, index = min(near, default=(NEAR + 1, 0))
         return self.events[index] if distance <= NEAR else None
 
-    def contextMenuEvent(self, event):
+    def contextMenuEvent(self, event: QtEvent) -> None:
         self.menu.popup(event.globalPos())
 
-    def mousePressEvent(self, event):
+    def mousePressEvent(self, event: QtEvent) -> None:
         self.mouseMoveEvent(event)
 
-    def mouseMoveEvent(self, event):
+    def mouseMoveEvent(self, event: QtEvent) -> None:
         if event.buttons() & QtCore.Qt.LeftButton:
             share = (event.pos().x() - LEFT) / max(self.width() - LEFT - RIGHT, 1)
             self.chosen(min(max(share, 0.0), 1.0) * self.duration)
 
-    def event(self, event):
+    def event(self, event: QtEvent) -> bool:
         if event.type() == QtCore.QEvent.ToolTip:
             found = self.event_near(event.pos().x())
             text = "" if found is None else describe(found)
@@ -88,11 +96,11 @@ class StripChart(QtGui.QWidget):
             return True
         return super().event(event)
 
-    def resizeEvent(self, event):
+    def resizeEvent(self, event: QtEvent) -> None:
         self.picture = None
         super().resizeEvent(event)
 
-    def paintEvent(self, event):
+    def paintEvent(self, event: QtEvent) -> None:
         if self.picture is None:
             ratio = self.devicePixelRatioF()
             self.picture = QtGui.QPixmap(self.size() * ratio)
@@ -115,19 +123,19 @@ class StripChart(QtGui.QWidget):
             painter.drawText(box, int(QtCore.Qt.AlignLeft), value)
         painter.end()
 
-    def _index(self):
+    def _index(self) -> int | None:
         times = next(iter(self.lines.values()))[0]
         return min(int(np.searchsorted(times, self.time)), len(times) - 1) if len(times) else None
 
-    def _height(self):
+    def _height(self) -> float:
         return (self.height() - EVENTS) / max(len(self.rows()), 1)
 
-    def _arrange(self):
+    def _arrange(self) -> None:
         self.setMinimumHeight(EVENTS + ROW * max(len(self.rows()), 1))
         self.picture = None
         self.update()
 
-    def _draw(self, painter):
+    def _draw(self, painter: Painter) -> None:
         painter.setRenderHint(QtGui.QPainter.Antialiasing)
         width, height = self.width() - LEFT - RIGHT, self._height()
         for k, (name, unit, colour) in enumerate(self.rows()):
@@ -151,7 +159,7 @@ class StripChart(QtGui.QWidget):
             painter.drawPolygon(QtGui.QPolygonF([QtCore.QPointF(*c) for c in corners]))
 
 
-def staircase(steps, name):
+def staircase(steps: Mapping[str, Array], name: str) -> tuple[Array, Array]:
     """(times, values) of a quantity that is constant in every step, 0 between motions that grind."""
     begin = steps["time"] - 0.5 * steps["duration"]
     end = steps["time"] + 0.5 * steps["duration"]
@@ -164,7 +172,7 @@ def staircase(steps, name):
     return times[kept], heights[kept]
 
 
-def envelope(times, values, duration, width):
+def envelope(times: Array, values: Array, duration: float, width: int) -> tuple[Array, Array]:
     """Points (x in pixels, value) that look like the line: least and largest value of every pixel."""
     x = times / duration * width
     if len(x) <= 2 * width or width < 1:
@@ -174,7 +182,7 @@ def envelope(times, values, duration, width):
     return np.repeat(np.floor(x[begins]), 2), np.stack([low, high], axis=1).ravel()
 
 
-def describe(event):
+def describe(event: Event) -> str:
     """An event in two lines."""
     where = translate("BeltGrinding", "{:.2f} s, pose {}").format(event["time"], event["pose"] + 1)
     if event["line"]:

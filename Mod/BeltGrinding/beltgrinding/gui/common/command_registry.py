@@ -1,9 +1,16 @@
 """How views reach the commands, which stand in a layer above: what registers them is put in here."""
 
-register = None  # tells FreeCAD the commands, if it does not know them: set by the package itself
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+register: Callable[
+    [], None
+] | None = None  # tells FreeCAD the commands, if it does not know them: set by the package itself
 
 
-def action(name):
+def action(name: str) -> list[Any]:
     """The QActions of a command of the workbench."""
     import FreeCADGui as Gui  # the package itself is imported without FreeCAD
 

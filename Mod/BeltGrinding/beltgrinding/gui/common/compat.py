@@ -1,7 +1,12 @@
 """What differs between FreeCAD's generations, for the window."""
 
+from __future__ import annotations
+
 import FreeCAD
 from PySide import QtCore, QtGui  # FreeCAD's shim: PySide2 or 6; 0.20 has the widgets in QtGui
+
+from ...objects.kinds import ViewObject
+from .kinds import Buttons
 
 __all__ = ["QtCore", "QtGui", "VERSION", "buttons", "make_matt", "translate"]
 
@@ -9,7 +14,7 @@ VERSION = tuple(int("".join(c for c in part if c.isdigit()) or 0) for part in Fr
 translate = FreeCAD.Qt.translate
 
 
-def buttons(*names):
+def buttons(*names: str) -> Buttons:
     """What getStandardButtons returns: an int in 0.20, the enum later. Names such as "Ok"."""
     box = QtGui.QDialogButtonBox
     both = getattr(box, names[0])
@@ -18,7 +23,7 @@ def buttons(*names):
     return int(both) if VERSION < (1, 0) else both
 
 
-def make_matt(view):
+def make_matt(view: ViewObject) -> None:
     """Takes the shine from a view provider: 1.0 gives all that is new a highlight, in whose middle
     every colour is white.
     """

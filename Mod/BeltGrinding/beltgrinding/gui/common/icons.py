@@ -1,12 +1,16 @@
 """Icons of the workbench: SVG files in Resources/icons."""
 
+from __future__ import annotations
+
 from pathlib import Path
+from typing import Any
 
 import FreeCAD
 import FreeCADGui as Gui
 
 from ...base.resources import resources
 from .compat import QtCore, QtGui
+from .kinds import Icon
 from .theme import theme
 
 SIZE = 64  # pixels of an icon that is put together
@@ -14,17 +18,17 @@ BADGE = 0.62  # of its side: the mark in its corner
 _marked = {}  # name -> file
 
 
-def icon(name):
+def icon(name: str) -> str:
     """Path of the icon ``name``, as FreeCAD takes it."""
     return str(resources() / "icons" / f"{name}.svg")
 
 
-def qicon(name):
+def qicon(name: str) -> Icon:
     """The icon as QIcon, drawn by FreeCAD: Qt draws no SVG itself where its plugin is missing."""
     return Gui.getIcon(icon(name))
 
 
-def stale_icon(name):
+def stale_icon(name: str) -> str:
     """Path of the icon ``name`` with the mark of what is out of date in its corner."""
     if name not in _marked:
         picture = QtGui.QPixmap(SIZE, SIZE)
@@ -42,7 +46,7 @@ def stale_icon(name):
     return _marked[name]
 
 
-MEDIA = {  # polygons in a square of 16, drawn in the colour of the window's text
+MEDIA: dict[str, Any] = {  # polygons in a square of 16, drawn in the colour of the window's text
     "play": [((4, 2), (13, 8), (4, 14))],
     "pause": [((4, 2), (7, 2), (7, 14), (4, 14)), ((9, 2), (12, 2), (12, 14), (9, 14))],
     "next": [((3, 2), (10, 8), (3, 14)), ((11, 2), (13, 2), (13, 14), (11, 14))],
@@ -50,7 +54,7 @@ MEDIA = {  # polygons in a square of 16, drawn in the colour of the window's tex
 }
 
 
-def media_icon(name):
+def media_icon(name: str) -> Icon:
     """QIcon of a button of the playback: Qt's own are dark in every theme."""
     picture = QtGui.QPixmap(SIZE, SIZE)
     picture.fill(QtCore.Qt.transparent)

@@ -4,32 +4,36 @@ What a user is to mend is a warning there: on an error FreeCAD pulls its report 
 fault of ours is one.
 """
 
+from __future__ import annotations
+
 import traceback
+from typing import Any
 
 import FreeCAD
 import FreeCADGui as Gui
 
-from ...base.messages import notes, sentence
+from ...base.messages import notes, reason, sentence
 from .compat import QtGui, translate
+from .kinds import Icon, Json
 
 
-def error_text(error):
+def error_text(error: Any) -> str:
     """What an error, a warning or a note says, in the window's language."""
     if not hasattr(error, "code"):
-        return str(error)
+        return reason(error)
     from .report_language import language  # not above: that the core is missing must be said, too
 
     return sentence(error, language())
 
 
-def note_texts(found):
+def note_texts(found: Json) -> list[str]:
     """What the notes of a verdict or a check of the settings say, in the window's language."""
     from .report_language import language  # not above, as in error_text
 
     return notes(found, language())
 
 
-def report(error):
+def report(error: BaseException) -> None:
     """Says an error in the report view and, where there is a user to see it, in a message."""
     from ...engine import InputError  # not above, as in error_text
 
@@ -39,19 +43,19 @@ def report(error):
     tell(error_text(error))
 
 
-def tell(text):
+def tell(text: str) -> None:
     """An error in the report view and in a message that does not hold FreeCAD up."""
     FreeCAD.Console.PrintWarning(f"{text}\n")
     _show(text, "BeltGrinding_Error", QtGui.QMessageBox.Warning)
 
 
-def inform(text):
+def inform(text: str) -> None:
     """Likewise what is no error, but must not be missed."""
     FreeCAD.Console.PrintWarning(f"{text}\n")
     _show(text, "BeltGrinding_Note", QtGui.QMessageBox.Information)
 
 
-def _show(text, name, icon):
+def _show(text: str, name: str, icon: Icon) -> None:
     box = QtGui.QMessageBox(Gui.getMainWindow())
     box.setObjectName(name)
     box.setIcon(icon)

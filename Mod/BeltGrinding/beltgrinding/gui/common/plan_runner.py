@@ -1,11 +1,15 @@
 """Plans a job in a thread of its own, polled by the window."""
 
+from __future__ import annotations
+
 from ...objects import plan as planned
+from ...objects.kinds import DocumentObject
 from .compat import translate
+from .kinds import Context, Done, Told
 from .runner import Runner
 
 
-def words():
+def words() -> dict[str, str]:
     """``pictures.WORDS`` in the window's language."""
     return {
         "before": translate("BeltGrinding", "before"),
@@ -28,16 +32,16 @@ class PlanRunner(Runner):
     """``done(plan.Found or None, error or None)`` follows in the end; ``rounds`` grows while it runs. The Plan
     object is written in one undo step, in the end. Raises InputError for what is missing."""
 
-    def __init__(self, obj, progress, done):
+    def __init__(self, obj: DocumentObject, progress: Told, done: Done) -> None:
         self.plan, self.rounds, self.words = obj.Name, [], words()
         job = obj.getParentGroup()
         self.task = planned.Work(obj, job)
         super().__init__(job, progress, done)
 
-    def work(self, context):
+    def work(self, context: Context) -> planned.Found:
         return self.task.find(self.data, context, self.rounds.append, self.words)
 
-    def _store(self, found):
+    def _store(self, found: planned.Found) -> planned.Found:
         step = translate("BeltGrinding", "Plan")
         self._store_in(self.plan, step, lambda job, obj: planned.store(obj, job, found))
         return found

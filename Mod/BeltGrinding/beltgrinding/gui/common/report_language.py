@@ -1,5 +1,7 @@
 """The texts that reports and window share, in the window's language."""
 
+from __future__ import annotations
+
 import FreeCAD
 
 from ...reporting.language import Language
@@ -7,12 +9,12 @@ from ...reporting.language import Language
 GENERAL = "User parameter:BaseApp/Preferences/General"
 
 
-def language():
+def language() -> str:
     """German where FreeCAD's is, else English."""
     chosen = FreeCAD.ParamGet(GENERAL).GetString("Language", "English")
     return "de" if chosen in ("German", "Deutsch") else "en"
 
 
-def words():
+def words() -> Language:
     """The ``Language``."""
     return Language(language())

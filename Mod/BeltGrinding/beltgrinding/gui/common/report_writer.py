@@ -1,5 +1,7 @@
 """Writes a report while FreeCAD stays usable, and opens it."""
 
+from __future__ import annotations
+
 import time
 from pathlib import Path
 
@@ -7,6 +9,7 @@ import FreeCAD
 
 from ...engine import Cancelled
 from ...objects import job_inputs, reports
+from ...objects.kinds import DocumentObject
 from ...reporting import report as reporting
 from .compat import QtCore, QtGui, translate
 from .messages import report as say
@@ -22,7 +25,7 @@ class ReportWriter(Background):
 
     running = None  # the one that is at work
 
-    def __init__(self, job, path):
+    def __init__(self, job: DocumentObject, path: Path | str) -> None:
         self.path = Path(path)
         self.folder = job_inputs.scratch_folder()
         result, title, notes = reports.result_to_report(job, self.folder.name)
@@ -36,11 +39,11 @@ class ReportWriter(Background):
         ReportWriter.running = self
         self._poll()
 
-    def _poll(self):
+    def _poll(self) -> None:
         self.status.update_progress(0.0, translate("BeltGrinding", "Writing the report"))
         super()._poll()
 
-    def _finish(self, path, error):
+    def _finish(self, path: Path | None, error: BaseException | None) -> None:
         ReportWriter.running = None
         self.status.remove()
         self.folder.cleanup()

@@ -1,15 +1,25 @@
 """Runs a job's simulation in a thread of its own, polled by the window."""
 
+from __future__ import annotations
+
 import gc
 import threading
 import time
 import weakref
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from typing import TYPE_CHECKING, Any
 
 from ...engine import Cancelled, RunContext
 from ...objects import api, deviation, job_data, job_inputs, simulation as results
+from ...objects.kinds import DocumentObject
 from ...simulation import run as runs
 from .compat import QtCore, translate
+from .kinds import Context, Done, Told, Widget
+
+if TYPE_CHECKING:
+    from ...engine import core
+    from ...simulation.result import Result
 
 POLL = 50  # ms
 END_POLL = 8  # ms, between looks at whether a run has ended
@@ -19,13 +29,13 @@ MOST_RECORDED = 200e6  # bytes; what takes more is not kept for playback
 # All works until the window has seen their end. Else the thread may be the last that holds one and free it with
 # its timer, which only the window's thread may do; and who is told of the end may let go of the object whose
 # method PySide is just calling. Of both FreeCAD dies, at times.
-_going = set()
+_going: set[Background] = set()
 COLLECT = 2.0  # s between collections of garbage while works go on
 _collected = [0.0]  # when the last one was
 _before = [True]  # whether Python collected before the works began
 
 
-def _begin(work):
+def _begin(work: Background) -> None:
     """Holds a work. Python looks for garbage in whatever thread happens to make objects, and frees widgets there,
     of which Qt then keeps a dead address: while works go on only the window's thread does it."""
     if not _going:
@@ -34,14 +44,14 @@ def _begin(work):
     _going.add(work)
 
 
-def _end(work):
+def _end(work: Background) -> None:
     """Lets go of a work whose end the window has seen."""
     _going.discard(work)
     if not _going and _before[0]:
         gc.enable()
 
 
-def _collect():
+def _collect() -> None:
     if time.monotonic() - _collected[0] > COLLECT:
         gc.collect(1)
         _collected[0] = time.monotonic()
@@ -52,10 +62,10 @@ class Background(QtCore.QObject):
     window's thread, but not once ``owner``, a widget, is gone: then the work is cancelled.
     """
 
-    def __init__(self, work, done, owner=None):
+    def __init__(self, work: Callable[[RunContext], Any], done: Done, owner: Widget = None) -> None:
         super().__init__()
         self.context = RunContext()
-        self.outcome = (None, None)
+        self.outcome: tuple[Any, BaseException | None] = (None, None)
         self.done = done
         self.thread = threading.Thread(target=self._work, args=(work,), daemon=True)
         _begin(self)
@@ -67,27 +77,27 @@ class Background(QtCore.QObject):
             myself = weakref.ref(self)  # the owner may outlast it
             owner.destroyed.connect(lambda *_: myself() and myself().abandon())
 
-    def cancel(self):
+    def cancel(self) -> None:
         """Asks the work to end; ``done`` follows with Cancelled."""
         self.context.cancel()
 
-    def abandon(self, then=lambda: None):
+    def abandon(self, then: Callable[[], object] = lambda: None) -> None:
         """Cancels for one who goes away: in the end only ``then`` is called."""
         self.done = lambda *_: then()
         self.cancel()
 
-    def forget(self):
+    def forget(self) -> None:
         """Its end was waited for: nothing follows any more."""
         self.timer.stop()
         _end(self)
 
-    def _work(self, work):
+    def _work(self, work: Callable[[RunContext], Any]) -> None:
         try:
             self.outcome = (work(self.context), None)
         except BaseException as error:  # handed to the window's thread
             self.outcome = (None, error)
 
-    def _poll(self):
+    def _poll(self) -> None:
         _collect()
         if not self.thread.is_alive():
             self.timer.stop()
@@ -103,7 +113,14 @@ class Runner(Background):
     None, error or None): in the end. then(job): what belongs to the undo step of the result.
     """
 
-    def __init__(self, job, progress, done, recording=None, then=None):
+    def __init__(
+        self,
+        job: DocumentObject,
+        progress: Told,
+        done: Done,
+        recording: core.Recording | None = None,
+        then: Callable[[DocumentObject], object] | None = None,
+    ) -> None:
         self.document, self.name = job.Document, job.Name
         self.transient = job.Document.TransientDir
         self.progress, self.ended = progress, done
@@ -119,8 +136,8 @@ class Runner(Background):
         super().__init__(self.work, self._finish)
         self.timer.setInterval(END_POLL)
 
-    def work(self, context):
-        """(``job.Result``, its files as the document keeps them); in the thread."""
+    def work(self, context: Context) -> Any:
+        """(the run's ``Result``, its files as the document keeps them); in the thread."""
         result = self.grind(context)
         if result.recording is not None and result.recording.bytes > MOST_RECORDED:
             result.recording = None
@@ -131,23 +148,23 @@ class Runner(Background):
                 deviation.prepare(result.field, limits, self.surface)
             return result, files.result()
 
-    def grind(self, context):
-        """The ``job.Result``; in the thread."""
+    def grind(self, context: Context) -> Result:
+        """The ``simulation.result.Result``; in the thread."""
         return runs.run(self.data, context, self.recorded)
 
-    def job(self):
+    def job(self) -> DocumentObject | None:
         """The job, or None if it or its document is no longer there."""
         try:
             return self.document.getObject(self.name)
         except ReferenceError:
             return None
 
-    def abandon(self):
+    def abandon(self) -> None:
         """Cancels, and stores nothing even if the run has just ended."""
         self.progress = lambda _: None
         super().abandon(self.folder.cleanup)
 
-    def _poll(self):
+    def _poll(self) -> None:
         if self.job() is None:
             self.context.cancel()
         now = time.monotonic()
@@ -156,7 +173,7 @@ class Runner(Background):
             self.progress(self.context.progress)
         super()._poll()
 
-    def _finish(self, result, error):
+    def _finish(self, result: Any, error: BaseException | None) -> None:
         self.folder.cleanup()
         simulation = None
         if error is None:
@@ -166,13 +183,13 @@ class Runner(Background):
                 error = problem
         self.ended(simulation, error)
 
-    def _store(self, outcome):
+    def _store(self, outcome: Any) -> Any:
         result, files = outcome
         job = self.job()
         if job is None:
             raise Cancelled(translate("BeltGrinding", "the job was removed while it ran"))
 
-        def write():
+        def write() -> DocumentObject:
             simulation = api.store_result(job, result, self.fingerprint, files)
             if self.then is not None:
                 self.then(job)
@@ -183,20 +200,22 @@ class Runner(Background):
         finally:
             deviation.forget_prepared()
 
-    def _store_in(self, name, step, store):
+    def _store_in(
+        self, name: str, step: str, store: Callable[[DocumentObject, DocumentObject], object]
+    ) -> None:
         """``store(job, obj)`` for the object called ``name`` that is made out of a run, in one undo step."""
         job = self.job()
         obj = None if job is None else self.document.getObject(name)
         if obj is None:
             raise Cancelled(translate("BeltGrinding", "the job was removed while it ran"))
 
-        def write():
+        def write() -> None:
             store(job, obj)
             obj.Proxy.update(obj)  # an input may have changed while it ran
 
         self._in_one_step(step, write)
 
-    def _in_one_step(self, name, write):
+    def _in_one_step(self, name: str, write: Callable[[], Any]) -> Any:
         self.document.openTransaction(name)
         try:
             made = write()

@@ -1,5 +1,7 @@
 """Asks for a file to be written."""
 
+from __future__ import annotations
+
 import re
 from pathlib import Path
 
@@ -10,7 +12,7 @@ from .compat import QtGui, translate
 SUFFIX = re.compile(r"\*(\.\w+)")
 
 
-def file_to_write(title, name, kinds):
+def file_to_write(title: str, name: str, kinds: str) -> str:
     """The path of a file that may be written, or "". A name without a suffix gets that of the chosen kind; the
     dialog has asked whether the name as it was typed is to be replaced, so that the other is asked for here.
 
@@ -25,7 +27,7 @@ def file_to_write(title, name, kinds):
     return path if not Path(path).exists() or _may_replace(title, path) else ""
 
 
-def _may_replace(title, path):
+def _may_replace(title: str, path: str) -> bool:
     question = translate("BeltGrinding", "{} is there already. Replace it?").format(path)
     buttons = QtGui.QMessageBox.Yes | QtGui.QMessageBox.No
     answer = QtGui.QMessageBox.question(

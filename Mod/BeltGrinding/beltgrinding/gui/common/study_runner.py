@@ -1,7 +1,13 @@
 """Runs a study in a thread of its own, polled by the window; its runs are processes of their own where Dask is."""
 
+from __future__ import annotations
+
+from typing import Any
+
 from ...objects import study as studies
+from ...objects.kinds import DocumentObject
 from .compat import translate
+from .kinds import Context, Done, Told
 from .runner import Runner
 
 
@@ -10,19 +16,19 @@ class StudyRunner(Runner):
     written in one undo step, in the end, also with what a cancelled study had. Raises InputError for what is missing.
     """
 
-    def __init__(self, obj, progress, done):
+    def __init__(self, obj: DocumentObject, progress: Told, done: Done) -> None:
         self.study, self.told = obj.Name, None
         job = obj.getParentGroup()
         self.task = studies.Work(obj, job)
         super().__init__(job, progress, done)
 
-    def work(self, context):
+    def work(self, context: Context) -> studies.Found:
         return self.task.find(self.data, context, self._tell)
 
-    def _tell(self, progress):
+    def _tell(self, progress: Any) -> None:
         self.told = progress
 
-    def _store(self, found):
+    def _store(self, found: studies.Found) -> studies.Found:
         step = translate("BeltGrinding", "Study")
         self._store_in(self.study, step, lambda _, obj: studies.store(obj, found))
         return found

@@ -1,5 +1,7 @@
 """How long a run will still take, from its progress."""
 
+from __future__ import annotations
+
 import math
 from collections import deque
 
@@ -12,11 +14,11 @@ SLOWLY = 0.08  # share of the whole time in which what is told comes by two thir
 class TimeLeft:
     """Told of the progress, it says the seconds that are left."""
 
-    def __init__(self):
-        self.seen = deque()
-        self.told = None  # (when, s left)
+    def __init__(self) -> None:
+        self.seen: deque[tuple[float, float]] = deque()
+        self.told: tuple[float, float] | None = None  # (when, s left)
 
-    def update(self, seconds, share):
+    def update(self, seconds: float, share: float) -> float | None:
         """``share`` done in [0, 1] after ``seconds``; the seconds left, or None: not to be said."""
         self.seen.append((seconds, share))
         while len(self.seen) > 2 and self.seen[1][0] <= (1.0 - WINDOW) * seconds:
@@ -26,7 +28,7 @@ class TimeLeft:
             return None
         return self._smoothed(seconds, (1.0 - share) * (seconds - begin) / (share - before))
 
-    def _smoothed(self, seconds, estimate):
+    def _smoothed(self, seconds: float, estimate: float) -> float:
         """The last estimate, which runs down as a clock, drawn to the new one: a number that jumps tells
         nobody anything."""
         if self.told is not None:
@@ -39,7 +41,7 @@ class TimeLeft:
         return estimate
 
 
-def duration(seconds):
+def duration(seconds: float) -> str:
     """A time as people say it: 12 s, 3 min 20 s, 1 h 05 min."""
     seconds = int(seconds + 0.5)
     if seconds < 60:

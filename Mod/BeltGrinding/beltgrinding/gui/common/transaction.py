@@ -1,5 +1,11 @@
 """One undo step, aborted and reported if it fails."""
 
+from __future__ import annotations
+
+from types import TracebackType
+from typing import Any
+
+from ...objects.kinds import Document
 from .messages import report
 
 
@@ -8,15 +14,20 @@ class transaction:
     step stays open for the panel that follows, whose Cancel takes it back.
     """
 
-    def __init__(self, document, name, panel=False):
+    def __init__(self, document: Document, name: str, panel: bool = False) -> None:
         self.document, self.name, self.panel = document, name, panel
         self.failed = False
 
-    def __enter__(self):
+    def __enter__(self) -> transaction:
         self.document.openTransaction(self.name)
         return self
 
-    def __exit__(self, kind, error, trace):
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: Any,
+        trace: TracebackType | None,
+    ) -> bool:
         if kind is None:
             if not self.panel:
                 self.document.commitTransaction()

@@ -1,10 +1,13 @@
 """A verdict in a line or two, in the language of the window."""
 
+from __future__ import annotations
+
 from ...inspection import finish_zones
 from .compat import translate
+from .kinds import Json
 
 
-def headline(found):
+def headline(found: Json) -> str:
     """The verdict in one line; that of a coarse run says so."""
     text = _word(found)
     if found.get("resolution") == "coarse":
@@ -12,7 +15,7 @@ def headline(found):
     return text
 
 
-def _word(found):
+def _word(found: Json) -> str:
     if found["overall"] == "pass":
         return translate("BeltGrinding", "In tolerance")
     zones = finish_zones.decides(found)
@@ -33,7 +36,7 @@ def _word(found):
     return text
 
 
-def shares(found):
+def shares(found: Json) -> str:
     """How much of the area lies in tolerance, and on which side the rest."""
     return translate(
         "BeltGrinding", "{:.2f} % in tolerance, {:.2f} % too much left, {:.2f} % cut too deep"

@@ -1,21 +1,27 @@
 """Work that the window waits for without standing still: in a thread, with a dialog that can cancel."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
 import FreeCADGui as Gui
 
 from ...engine import Cancelled
 from .compat import QtCore, QtGui, translate
+from .kinds import Context, Widget
 from .runner import Background
 
 PATIENCE = 0.2  # s; what is done by then needs no dialog
 
 
-def wait(work, text):
+def wait(work: Callable[[Context], Any], text: str) -> Any:
     """What ``work(context)`` gives, or raises; meanwhile a dialog says ``text``. Cancelled as soon as
     its Cancel is pressed, even if the work does not notice: it ends in its thread, unheard.
     """
     loop, outcome = QtCore.QEventLoop(), []
 
-    def done(result, error):
+    def done(result: Any, error: BaseException | None) -> None:
         outcome.append((result, error))
         loop.quit()
 
@@ -39,13 +45,13 @@ def wait(work, text):
     return _given(*outcome[0])
 
 
-def _given(result, error):
+def _given(result: Any, error: BaseException | None) -> Any:
     if error is not None:
         raise error
     return result
 
 
-def _dialog(text):
+def _dialog(text: str) -> Widget:
     """A QProgressDialog: these FreeCAD lets have clicks and keys where it shows its wait cursor, as its
     own import commands do.
     """

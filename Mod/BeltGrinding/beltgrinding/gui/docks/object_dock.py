@@ -1,7 +1,12 @@
 """Base of the docks that show one document object: one dock of a kind for the window."""
 
+from __future__ import annotations
+
+from typing import Any
+
 import FreeCADGui as Gui
 
+from ...objects.kinds import DocumentObject
 from ..common.compat import QtCore, QtGui
 
 
@@ -12,13 +17,13 @@ class ObjectDock(QtGui.QDockWidget):
 
     _made = {}  # kind -> the one dock
 
-    def __init__(self, title, name):
+    def __init__(self, title: str, name: str) -> None:
         super().__init__(title, Gui.getMainWindow())
         self.setObjectName(name)
         self.obj = None
 
     @classmethod
-    def open(cls, obj):
+    def open(cls, obj: DocumentObject) -> ObjectDock:
         """Shows the object in the dock of this kind; returns that."""
         if cls not in cls._made:
             cls._made[cls] = cls()
@@ -29,27 +34,27 @@ class ObjectDock(QtGui.QDockWidget):
         return dock
 
     @classmethod
-    def current(cls):
+    def current(cls) -> ObjectDock | None:
         """The dock of this kind, None before the first was opened."""
         return cls._made.get(cls)
 
-    def place(self, area, pixels):
+    def place(self, area: Any, pixels: int) -> None:
         """Puts the dock into an area of the window, so wide or high."""
         window = Gui.getMainWindow()
         window.addDockWidget(area, self)
         below = area in (QtCore.Qt.BottomDockWidgetArea, QtCore.Qt.TopDockWidgetArea)
         window.resizeDocks([self], [pixels], QtCore.Qt.Vertical if below else QtCore.Qt.Horizontal)
 
-    def show_object(self, obj):
+    def show_object(self, obj: DocumentObject) -> None:
         """Shows another object."""
         self.obj = obj
         self.setWindowTitle(obj.Label)
         self.refresh()
 
-    def refresh(self):
+    def refresh(self) -> None:
         raise NotImplementedError
 
-    def alive(self):
+    def alive(self) -> bool:
         """Whether the object shown is still in its document."""
         try:
             return self.obj is not None and self.obj.Document.getObject(self.obj.Name) is not None

@@ -1,17 +1,22 @@
 """Playback: a dock under the 3D view that shows a recorded simulation at any moment."""
 
+from __future__ import annotations
+
 import time
 import traceback
+from collections.abc import Callable, Mapping
 
 import FreeCAD
 import FreeCADGui as Gui
 
 from ...engine import Cancelled, InputError, core
 from ...objects import job_data
+from ...objects.kinds import Document, DocumentObject
 from ...objects.simulation import Simulation
 from ..charts.strip_chart import StripChart
 from ..common.compat import QtCore, QtGui, translate
 from ..common.icons import media_icon
+from ..common.kinds import Array, QtEvent, Widget
 from ..common.messages import error_text
 from ..common.runner import Runner
 from ..common.theme import warning_style
@@ -27,7 +32,7 @@ SCALE = ("ToleranceLower", "ToleranceUpper", "ColourLimit", "Bands", "Shown")  #
 class Playback(QtGui.QDockWidget):
     """Plays the simulation of a job. It changes no property of the document."""
 
-    def __init__(self, job):
+    def __init__(self, job: DocumentObject) -> None:
         super().__init__(translate("BeltGrinding", "Playback"), Gui.getMainWindow())
         self.setObjectName("BeltGrinding_PlaybackDock")
         self.setAttribute(QtCore.Qt.WA_DeleteOnClose)
@@ -41,14 +46,14 @@ class Playback(QtGui.QDockWidget):
         FreeCAD.addDocumentObserver(self)
         self.watching = True
 
-    def job(self):
+    def job(self) -> DocumentObject | None:
         """The job, or None if it or its document is no longer there."""
         try:
             return self.document.getObject(self.name)
         except ReferenceError:
             return None
 
-    def show_result(self):
+    def show_result(self) -> None:
         """Shows the job's recording, or offers to make one."""
         self._clear()
         job = self.job()
@@ -69,7 +74,7 @@ class Playback(QtGui.QDockWidget):
         self.setWidget(self._controls(simulation, found[1]))
         self.go(0.0)
 
-    def _offer(self, simulation):
+    def _offer(self, simulation: DocumentObject) -> Widget:
         """What is there without a recording."""
         panel = QtGui.QWidget()
         body = QtGui.QVBoxLayout(panel)
@@ -98,7 +103,7 @@ class Playback(QtGui.QDockWidget):
         body.addStretch()
         return panel
 
-    def simulate(self):
+    def simulate(self) -> None:
         """Simulates with a recording, in the background."""
         try:
             self.runner = Runner(self.job(), self._progress, self._simulated, core.Recording())
@@ -109,10 +114,10 @@ class Playback(QtGui.QDockWidget):
         self.bar.show()
         self.cancel.show()
 
-    def _progress(self, share):
+    def _progress(self, share: float) -> None:
         self.bar.setValue(int(1000 * share))
 
-    def _simulated(self, simulation, error):
+    def _simulated(self, simulation: DocumentObject, error: BaseException | None) -> None:
         self.runner = None
         if self.job() is None:
             self.close()
@@ -128,12 +133,12 @@ class Playback(QtGui.QDockWidget):
                 translate("BeltGrinding", "Cancelled.") if cancelled else error_text(error)
             )
 
-    def _controls(self, simulation, steps):
+    def _controls(self, simulation: DocumentObject, steps: Mapping[str, Array]) -> Widget:
         panel = QtGui.QWidget()
         body = QtGui.QVBoxLayout(panel)
         row = QtGui.QHBoxLayout()
 
-        def button(name, picture, text, action):
+        def button(name: str, picture: str, text: str, action: Callable[..., object]) -> Widget:
             made = QtGui.QToolButton()
             made.setObjectName(name)
             made.setIcon(media_icon(picture))
@@ -186,7 +191,7 @@ class Playback(QtGui.QDockWidget):
         body.addWidget(self.chart, 1)
         return panel
 
-    def toggle(self):
+    def toggle(self) -> None:
         """Plays or pauses; from the end, plays from the begin."""
         if self.clock.isActive():
             self.pause()
@@ -197,16 +202,16 @@ class Playback(QtGui.QDockWidget):
         self.clock.start()
         self.play_button.setIcon(media_icon("pause"))
 
-    def pause(self):
+    def pause(self) -> None:
         self.clock.stop()
         self.play_button.setIcon(media_icon("play"))
 
-    def scrub(self, moment):
+    def scrub(self, moment: float) -> None:
         """Goes to a moment by hand: a playback pauses."""
         self.pause()
         self.go(moment)
 
-    def step(self, way):
+    def step(self, way: int) -> None:
         """Goes to the next event (``way`` 1) or to the one before (-1)."""
         times = sorted(event["time"] for event in self.events)
         now = self.scene.time
@@ -217,7 +222,7 @@ class Playback(QtGui.QDockWidget):
         if found:
             self.scrub(found[0])
 
-    def go(self, moment):
+    def go(self, moment: float) -> None:
         """Shows the moment, s since the begin of the first program."""
         self.scene.go(moment)
         self.slider.blockSignals(True)
@@ -231,10 +236,10 @@ class Playback(QtGui.QDockWidget):
             text += translate("BeltGrinding", ", line {}").format(line)
         self.label.setText(text)
 
-    def _slid(self, value):
+    def _slid(self, value: int) -> None:
         self.scrub(self.scene.duration * value / PARTS)
 
-    def _tick(self):
+    def _tick(self) -> None:
         if self.job() is None:
             self.close()
             return
@@ -245,7 +250,7 @@ class Playback(QtGui.QDockWidget):
         if moment >= self.scene.duration:
             self.pause()
 
-    def slotChangedObject(self, obj, name):
+    def slotChangedObject(self, obj: DocumentObject, name: str) -> None:
         """FreeCAD changes a property: by hand, by undo, by another run."""
         if self.scene is None:
             return
@@ -257,44 +262,44 @@ class Playback(QtGui.QDockWidget):
         elif obj == self.scene.deviation and name in SCALE:
             self._later(self.recolour)
 
-    def slotDeletedObject(self, obj):
+    def slotDeletedObject(self, obj: DocumentObject) -> None:
         """FreeCAD removes an object."""
         if self.scene is not None and any(obj == one for one in self.scene.needed):
             self.pause()
             self._later(self.show_result)
 
-    def _later(self, work):
+    def _later(self, work: Callable[[], object]) -> None:
         """Calls ``work`` once, when FreeCAD is through with what it does."""
         if work.__name__ not in self.waiting:
             self.waiting.add(work.__name__)
             QtCore.QTimer.singleShot(0, lambda: self._now(work))
 
-    def _now(self, work):
+    def _now(self, work: Callable[[], object]) -> None:
         self.waiting.discard(work.__name__)
         if self.watching:
             work()
 
-    def preferences_changed(self):
+    def preferences_changed(self) -> None:
         """The colours, or the legend's unit, are others."""
         self._later(self.recolour)
 
-    def recolour(self):
+    def recolour(self) -> None:
         """Follows the bounds, steps and colours of the job's Deviation."""
         if self.scene is not None and self.job() is not None:
             self.scene.recolour(self.job())
 
-    def slotDeletedDocument(self, document):
+    def slotDeletedDocument(self, document: Document) -> None:
         """FreeCAD closes a document."""
         if document is self.document or self.job() is None:
             self.close()
 
-    def _clear(self):
+    def _clear(self) -> None:
         self.clock.stop()
         if self.scene is not None:
             self.scene.close()
             self.scene = None
 
-    def closeEvent(self, event):
+    def closeEvent(self, event: QtEvent) -> None:
         if self.watching:
             FreeCAD.removeDocumentObserver(self)
             self.watching = False
@@ -305,7 +310,7 @@ class Playback(QtGui.QDockWidget):
         super().closeEvent(event)
 
 
-def show(job):
+def show(job: DocumentObject) -> Playback:
     """Opens the playback of a job under the 3D view, in place of another one's."""
     window = Gui.getMainWindow()
     for dock in window.findChildren(QtGui.QDockWidget, "BeltGrinding_PlaybackDock"):

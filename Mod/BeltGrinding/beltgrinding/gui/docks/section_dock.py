@@ -1,5 +1,10 @@
 """The cross-section's dock: plane or line, plot, export."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
 import FreeCAD
 import FreeCADGui as Gui
 import numpy as np
@@ -8,9 +13,11 @@ from ...engine import InputError
 from ...inspection import section as sections, section_plot
 from ...objects import preferences, section as objects
 from ...objects.fields import field_of, forget_field
+from ...objects.kinds import Document, DocumentObject, Point
 from ...objects.proxy import type_of
 from ..charts.section_chart import SectionChart
 from ..common.compat import QtCore, QtGui, translate
+from ..common.kinds import QtEvent, View3D, Widget
 from ..common.messages import error_text
 from ..common.save_dialog import file_to_write
 from ..common.theme import warning_style
@@ -25,7 +32,7 @@ HEIGHT = 330  # pixels of the dock as it comes
 class SectionDock(ObjectDock):
     """Shows a Section object."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         super().__init__(translate("BeltGrinding", "Cross-section"), "BeltGrinding_SectionDock")
         self.quiet, self.picks, self.picking = False, [], []
         self.opened = False  # an undo step of ours
@@ -44,7 +51,7 @@ class SectionDock(ObjectDock):
         self.place(QtCore.Qt.BottomDockWidgetArea, HEIGHT)
         FreeCAD.addDocumentObserver(self)
 
-    def _add_controls(self):
+    def _add_controls(self) -> None:
         self.kind = self._combo(
             "sectionKind",
             [translate("BeltGrinding", "across {}").format(name) for name in AXES]
@@ -108,7 +115,7 @@ class SectionDock(ObjectDock):
             row.addWidget(button)
         self.controls.addRow(row)
 
-    def _combo(self, name, texts, tip):
+    def _combo(self, name: str, texts: Iterable[str], tip: str) -> Widget:
         box = steady(QtGui.QComboBox())
         box.setObjectName(name)
         box.addItems(texts)
@@ -117,11 +124,11 @@ class SectionDock(ObjectDock):
 
     # What is shown
 
-    def show_object(self, obj):
+    def show_object(self, obj: DocumentObject) -> None:
         self._stop_picking()
         super().show_object(obj)
 
-    def refresh(self):
+    def refresh(self) -> None:
         """Shows the object as it is now."""
         if not self.alive():
             self.obj = None
@@ -148,17 +155,17 @@ class SectionDock(ObjectDock):
         self.chart.show_plot(section, plot)
         self._say(self.figures_text(obj), False)
 
-    def preferences_changed(self):
+    def preferences_changed(self) -> None:
         """The unit of the figures is another one."""
         if self.isVisible():
             self.refresh()
 
-    def exaggeration(self):
+    def exaggeration(self) -> float | None:
         """The factor of the heights, None: chosen by the plot."""
         shape = self.mode.currentIndex() == 1
         return self.factor.value() if shape and self.factor.value() > 0 else None
 
-    def figures_text(self, obj):
+    def figures_text(self, obj: DocumentObject) -> str:
         """The section's figures in words."""
         text = translate(
             "BeltGrinding",
@@ -174,11 +181,11 @@ class SectionDock(ObjectDock):
             text += "\n" + translate("BeltGrinding", "Out of date: simulate again.")
         return text
 
-    def _say(self, text, error):
+    def _say(self, text: str, error: bool) -> None:
         self.figures.setText(text)
         self.figures.setStyleSheet(warning_style(error))
 
-    def _show_plane(self, obj):
+    def _show_plane(self, obj: DocumentObject) -> None:
         line = obj.Cut == objects.LINE
         normal = np.array(obj.Normal, dtype=float)
         length = np.linalg.norm(normal)
@@ -202,23 +209,23 @@ class SectionDock(ObjectDock):
 
     # What is changed
 
-    def _open(self):
+    def _open(self) -> None:
         """Opens an undo step, unless the document has one: an open panel's, which is not ours."""
         if self.alive() and not self.obj.Document.HasPendingTransaction:
             self.obj.Document.openTransaction(translate("BeltGrinding", "Move cross-section"))
             self.opened = True
 
-    def _released(self):
+    def _released(self) -> None:
         if self.alive():
             self.obj.Document.recompute()
             self._commit()
 
-    def _commit(self):
+    def _commit(self) -> None:
         if self.opened and not self.slider.isSliderDown():
             self.obj.Document.commitTransaction()
             self.opened = False
 
-    def change(self, **values):
+    def change(self, **values: Any) -> None:
         """Sets properties of the object, as one undo step (a drag of the slider is one, too)."""
         if self.quiet or not self.alive():
             return
@@ -236,7 +243,7 @@ class SectionDock(ObjectDock):
         self._commit()
         self.refresh()
 
-    def _kind_chosen(self, index):
+    def _kind_chosen(self, index: int) -> None:
         if self.quiet or not self.alive():
             return
         if index < 3:
@@ -250,15 +257,15 @@ class SectionDock(ObjectDock):
         else:
             self.pick.setChecked(True)
 
-    def _slid(self, step):
+    def _slid(self, step: int) -> None:
         if not self.quiet:
             self._move_to(self.low + (self.high - self.low) * step / STEPS)
 
-    def _offset_typed(self, value):
+    def _offset_typed(self, value: float) -> None:
         if not self.quiet:
             self._move_to(value)
 
-    def _move_to(self, value):
+    def _move_to(self, value: float) -> None:
         if not self.alive():
             return
         normal, point = (np.array(v, dtype=float) for v in (self.obj.Normal, self.obj.Point))
@@ -267,7 +274,7 @@ class SectionDock(ObjectDock):
 
     # Two points in the 3D view
 
-    def _pick_toggled(self, on):
+    def _pick_toggled(self, on: bool) -> None:
         if not on:
             return self._stop_picking()
         self.picks = []
@@ -281,7 +288,7 @@ class SectionDock(ObjectDock):
             self.picking.append((view, call))
         self._say(translate("BeltGrinding", "Click the first point on the surface."), False)
 
-    def _stop_picking(self):
+    def _stop_picking(self) -> None:
         for view, call in self.picking:
             try:
                 view.removeEventCallback("SoMouseButtonEvent", call)
@@ -291,7 +298,7 @@ class SectionDock(ObjectDock):
         if self.pick.isChecked():
             self.pick.setChecked(False)
 
-    def _clicked(self, view, event):
+    def _clicked(self, view: View3D, event: QtEvent) -> None:
         if event["State"] != "DOWN" or event["Button"] != "BUTTON1":
             return
         x, y = event["Position"]
@@ -299,7 +306,7 @@ class SectionDock(ObjectDock):
         if found:
             self.add_pick((found["x"], found["y"], found["z"]))
 
-    def add_pick(self, point):
+    def add_pick(self, point: Point) -> None:
         """Takes a picked point (mm); the second one cuts."""
         self.picks.append(tuple(point))
         if len(self.picks) == 1:
@@ -311,7 +318,7 @@ class SectionDock(ObjectDock):
 
     # Files
 
-    def export(self, kind):
+    def export(self, kind: str) -> None:
         """Asks for a file and writes the section as "csv" or "svg"."""
         if not self.alive():
             return
@@ -336,7 +343,7 @@ class SectionDock(ObjectDock):
 
     # What FreeCAD tells
 
-    def slotChangedObject(self, obj, name):
+    def slotChangedObject(self, obj: DocumentObject, name: str) -> None:
         if self.quiet or self.obj is None or not self.isVisible():
             return
         if type_of(obj) == objects.Section.TYPE and obj == self.obj and name == "Shown":
@@ -344,27 +351,27 @@ class SectionDock(ObjectDock):
         elif name == "OutOfDate" and obj == self.obj:
             QtCore.QTimer.singleShot(0, self.refresh)
 
-    def slotDeletedObject(self, obj):
+    def slotDeletedObject(self, obj: DocumentObject) -> None:
         if self.obj is not None and obj == self.obj:
             self._forget()
 
-    def slotDeletedDocument(self, document):
+    def slotDeletedDocument(self, document: Document) -> None:
         if self.obj is not None and not self._of_another(document):
             self._forget()
 
-    def _of_another(self, document):
+    def _of_another(self, document: Document) -> bool:
         try:
             return self.obj.Document != document
         except (ReferenceError, RuntimeError):
             return False
 
-    def _forget(self):
+    def _forget(self) -> None:
         self._stop_picking()
         self.obj = None
         forget_field()
         QtCore.QTimer.singleShot(0, self.refresh)
 
-    def closeEvent(self, event):
+    def closeEvent(self, event: QtEvent) -> None:
         self._stop_picking()
         forget_field()
         super().closeEvent(event)

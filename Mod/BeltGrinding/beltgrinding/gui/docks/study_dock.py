@@ -1,6 +1,10 @@
 """The study's dock: its table, a row a run, and its answers as charts."""
 
+from __future__ import annotations
+
 import json
+from collections.abc import Callable
+from typing import Any
 
 import FreeCAD
 import FreeCADGui as Gui
@@ -9,8 +13,10 @@ from ...base.files import cannot_be_written, write_whole
 from ...base.messages import sentence
 from ...engine import InputError
 from ...objects import api, stored_facts
+from ...objects.kinds import Document, DocumentObject
 from ...studies import names, report, table as tables
 from ..common.compat import QtCore, QtGui, translate
+from ..common.kinds import Json, TableItem, Widget
 from ..common.messages import error_text, inform, tell
 from ..common.report_language import language, words
 from ..common.save_dialog import file_to_write
@@ -32,7 +38,7 @@ MOST_WARNINGS = 4  # lines above the table; all are in the tip
 class _Cell(QtGui.QTableWidgetItem):
     """Sorted by number where it is one; empty ones come last."""
 
-    def __lt__(self, other):
+    def __lt__(self, other: TableItem) -> bool:
         mine, its = self.data(NUMBER), other.data(NUMBER)
         if mine is None or its is None:
             return (mine is None, self.text()) < (its is None, other.text())
@@ -42,7 +48,7 @@ class _Cell(QtGui.QTableWidgetItem):
 class StudyDock(ObjectDock):
     """Shows a Study object."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         super().__init__(translate("BeltGrinding", "Study"), "BeltGrinding_StudyDock")
         self.table = self.answers = None
         self.texts = words()
@@ -89,7 +95,7 @@ class StudyDock(ObjectDock):
         self.place(QtCore.Qt.BottomDockWidgetArea, HEIGHT)
         FreeCAD.addDocumentObserver(self)
 
-    def _charts(self):
+    def _charts(self) -> Widget:
         side, layout = QtGui.QWidget(), QtGui.QVBoxLayout()
         side.setLayout(layout)
         self.kind, self.figure = QtGui.QComboBox(), QtGui.QComboBox()
@@ -130,7 +136,7 @@ class StudyDock(ObjectDock):
         layout.addWidget(area, 1)
         return side
 
-    def refresh(self):
+    def refresh(self) -> None:
         """Shows the object as it is now."""
         if not self.alive():
             self._clear()
@@ -154,7 +160,7 @@ class StudyDock(ObjectDock):
         self._draw()
         self._enable()
 
-    def _clear(self):
+    def _clear(self) -> None:
         self.table = self.answers = None
         self.rows.setRowCount(0)
         self.told.setText("")
@@ -162,7 +168,7 @@ class StudyDock(ObjectDock):
         self.picture.show_bytes(b"")
         self._enable()
 
-    def _fill(self):
+    def _fill(self) -> None:
         made = self.table
         self.rows.setSortingEnabled(False)
         self.rows.clear()
@@ -184,7 +190,7 @@ class StudyDock(ObjectDock):
         self.rows.setSortingEnabled(True)
         self.rows.sortByColumn(0, QtCore.Qt.AscendingOrder)
 
-    def _head(self, name, made):
+    def _head(self, name: str, made: tables.Table) -> str:
         heads = {
             tables.RUN: translate("BeltGrinding", "Run"),
             tables.STATUS: translate("BeltGrinding", "State"),
@@ -194,7 +200,7 @@ class StudyDock(ObjectDock):
             return heads.get(name, name)
         return names.figure(name, self.texts)
 
-    def _cell(self, name, value, row):
+    def _cell(self, name: str, value: Any, row: int) -> TableItem:
         number = isinstance(value, (int, float)) and not isinstance(value, bool)
         if value is None or value != value:
             cell = _Cell("")
@@ -213,7 +219,7 @@ class StudyDock(ObjectDock):
             cell.setForeground(QtGui.QColor(theme().warning))
         return cell
 
-    def _word(self, name, text):
+    def _word(self, name: str, text: Any) -> str:
         if name == tables.STATUS:
             return {
                 tables.DONE: translate("BeltGrinding", "done"),
@@ -228,7 +234,7 @@ class StudyDock(ObjectDock):
             }.get(text, text)
         return text
 
-    def _tell(self):
+    def _tell(self) -> None:
         obj = self.obj
         if obj.OutOfDate:
             self.told.setText(
@@ -255,7 +261,7 @@ class StudyDock(ObjectDock):
             lines.append(text.format(obj.OpenedRun))
         self.told.setText(", ".join(lines))
 
-    def _warn(self):
+    def _warn(self) -> None:
         """What the user should know of the runs and of their answers."""
         lines = stored_facts.sentences(self.obj, "Warnings", language(), alike=True)
         lines += [sentence(one, language()) for one in (self.answers or {}).get("note_facts", ())]
@@ -263,7 +269,7 @@ class StudyDock(ObjectDock):
         self.warnings.setToolTip("\n".join(lines))
         self.warnings.setVisible(bool(lines) and not self.obj.OutOfDate)
 
-    def _draw(self):
+    def _draw(self) -> None:
         """The chosen chart of the chosen figure."""
         kind, name = self.kind.currentData(), self.figure.currentData()
         self.figure.setEnabled(kind not in ("yield", "matrix"))
@@ -277,11 +283,11 @@ class StudyDock(ObjectDock):
             self.picture.show_bytes(b"")
             self._note(error_text(error))
 
-    def _note(self, text):
+    def _note(self, text: str) -> None:
         self.note.setText(text)
         self.note.setVisible(bool(text))
 
-    def _chart(self, kind, name, dpi):
+    def _chart(self, kind: str, name: str | None, dpi: int) -> bytes | None:
         """Bytes of a picture; None where there is none, and the note says why."""
         if kind == "sobol" and name is not None:
             found = self.answers["figures"][name]["sobol"]
@@ -290,7 +296,7 @@ class StudyDock(ObjectDock):
         drawn = report.one(self.answers, self.table, kind, name, self.texts, dpi)
         return drawn
 
-    def enlarge(self):
+    def enlarge(self) -> None:
         """The chart in a window of its own."""
         if self.answers is None:
             return
@@ -311,13 +317,13 @@ class StudyDock(ObjectDock):
         dialog.setAttribute(QtCore.Qt.WA_DeleteOnClose)
         dialog.show()
 
-    def _enable(self):
+    def _enable(self) -> None:
         there = self.table is not None
         self.opens.setEnabled(there and bool(self.rows.selectedItems()))
         self.save.setEnabled(there)
         self.tells.setEnabled(self.answers is not None)
 
-    def open_row(self):
+    def open_row(self) -> None:
         """Sets the document to the chosen run, in one undo step."""
         row = self.rows.currentRow()
         if row < 0 or not self.alive():
@@ -344,7 +350,7 @@ class StudyDock(ObjectDock):
         if told:
             inform("\n".join(told))
 
-    def write_table(self):
+    def write_table(self) -> None:
         """The table as a CSV file."""
         self._write(
             translate("BeltGrinding", "Save table"),
@@ -353,10 +359,10 @@ class StudyDock(ObjectDock):
             self.table.csv_bytes,
         )
 
-    def write_report(self):
+    def write_report(self) -> None:
         """The answers as a report, in one HTML file."""
 
-        def content():
+        def content() -> bytes:
             drawn = report.draw(self.answers, self.table, self.texts)
             job = self.obj.getParentGroup()
             held = {"vary": json.loads(self.obj.Design)["vary"]}
@@ -366,7 +372,7 @@ class StudyDock(ObjectDock):
         title = translate("BeltGrinding", "Report of the study")
         self._write(title, f"{self.obj.Label}.html", "HTML (*.html)", content)
 
-    def _write(self, title, name, kinds, content):
+    def _write(self, title: str, name: str, kinds: str, content: Callable[[], bytes]) -> None:
         path = file_to_write(title, name, kinds)
         if not path:
             return
@@ -379,7 +385,7 @@ class StudyDock(ObjectDock):
 
     # Of the document
 
-    def slotChangedObject(self, obj, name):
+    def slotChangedObject(self, obj: DocumentObject, name: str) -> None:
         if self.obj is None or not self.alive() or obj is not self.obj:
             return
         if name in ("OutOfDate", "OpenedRun"):
@@ -387,11 +393,11 @@ class StudyDock(ObjectDock):
         elif name == "Fingerprint" and obj.Fingerprint:
             QtCore.QTimer.singleShot(0, self.refresh)
 
-    def slotDeletedObject(self, obj):
+    def slotDeletedObject(self, obj: DocumentObject) -> None:
         if self.obj is not None and obj == self.obj:
             self._forget()
 
-    def slotDeletedDocument(self, document):
+    def slotDeletedDocument(self, document: Document) -> None:
         try:
             other = self.obj is None or self.obj.Document != document
         except (ReferenceError, RuntimeError):
@@ -399,13 +405,13 @@ class StudyDock(ObjectDock):
         if not other:
             self._forget()
 
-    def _forget(self):
+    def _forget(self) -> None:
         self.obj = None
         self._clear()
         self.hide()
 
 
-def _best(found):
+def _best(found: Json) -> list[str]:
     """What is said of the best setting, in a list."""
     if found is None:
         return []
@@ -417,7 +423,7 @@ def _best(found):
     return [translate("BeltGrinding", "no run to choose the best from")]
 
 
-def show(obj):
+def show(obj: DocumentObject) -> None:
     """Opens the panel of a Study object; its table comes in the dock."""
     if obj.getParentGroup() is not None and not Gui.Control.activeDialog():
         Gui.Control.showDialog(StudyPanel(obj, StudyDock.open))

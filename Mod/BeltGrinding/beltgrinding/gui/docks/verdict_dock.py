@@ -1,5 +1,9 @@
 """The verdict's dock: pass or fail, faces and zones, clusters, and the motions that did it."""
 
+from __future__ import annotations
+
+from typing import Any
+
 import FreeCAD
 import FreeCADGui as Gui
 import numpy as np
@@ -7,9 +11,13 @@ import numpy as np
 from ...objects import api, raster_path, verdict as objects
 from ...objects.belt_machine import half_size
 from ...objects.job_data import children, face_name
+from ...objects.kinds import Document, DocumentObject
 from ...objects.robot_path import RobotPath
 from ...objects.fields import forget_field
 from ..common.compat import QtCore, QtGui, translate
+from ..common.event_texts import errors
+from ..common.kinds import QtEvent, Widget
+from ..common.theme import warning_style
 from ..common.verdict_words import headline
 from ..scene.cell_view import CellView
 from ..scene.sight import Sight
@@ -30,7 +38,7 @@ COLOURS = {"pass": "#1b5e20", "fail": "#b3261e", "unknown": "#8a6d00"}
 class VerdictDock(ObjectDock):
     """Shows a Verdict object."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         super().__init__(translate("BeltGrinding", "Verdict"), "BeltGrinding_VerdictDock")
         self.found = self.scene = self.wheel = None
         self.field = self.cluster_of = None
@@ -44,7 +52,14 @@ class VerdictDock(ObjectDock):
         self.figures.setObjectName("verdictFigures")
         self.figures.setWordWrap(True)
         self.figures.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
+        self.trouble = QtGui.QLabel()
+        self.trouble.setObjectName("verdictTrouble")
+        self.trouble.setWordWrap(True)
+        self.trouble.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
+        self.trouble.setStyleSheet(warning_style(True))
+        self.trouble.hide()
         layout.addWidget(self.overall)
+        layout.addWidget(self.trouble)
         layout.addWidget(self.figures)
         parts = QtGui.QSplitter(QtCore.Qt.Vertical)
         self.regions = table("regions", region_rows.titles())
@@ -89,12 +104,12 @@ class VerdictDock(ObjectDock):
 
     # What is shown
 
-    def show_object(self, obj):
+    def show_object(self, obj: DocumentObject) -> None:
         if self.obj is not obj:
             self._forget()
         super().show_object(obj)
 
-    def refresh(self):
+    def refresh(self) -> None:
         """Shows the object as it is now."""
         if not self.alive():
             return self._forget()
@@ -107,12 +122,16 @@ class VerdictDock(ObjectDock):
             self.overall.setStyleSheet("")
             for one in (self.regions, self.clusters, self.motions):
                 one.setRowCount(0)
+            self.trouble.hide()
             return self.figures.setText("")
         self.overall.setText(headline(self.found))
         self.overall.setStyleSheet(
             f"background: {COLOURS[self.found['overall']]}; color: white; "
             "font-weight: bold; padding: 6px;"
         )
+        trouble = errors(obj.Simulation) if obj.Simulation is not None else ""
+        self.trouble.setText(trouble)
+        self.trouble.setVisible(bool(trouble))
         text = doubts(self.found)
         if obj.OutOfDate:
             text = translate("BeltGrinding", "Out of date: simulate again.") + "\n" + text
@@ -120,7 +139,7 @@ class VerdictDock(ObjectDock):
         self.figures.setVisible(bool(text))
         self._fill_tables()
 
-    def _fill_tables(self):
+    def _fill_tables(self) -> None:
         job = self.obj.getParentGroup()
         name = lambda face: face_name(job, face - 1) or f"Face{face}"  # noqa: E731
         self.shown_regions = [
@@ -132,14 +151,14 @@ class VerdictDock(ObjectDock):
 
     # Going there
 
-    def go_to_region(self, row):
+    def go_to_region(self, row: int) -> None:
         """Looks at the worst place of a face or a zone."""
         if 0 <= row < len(self.shown_regions):
             worst = self.shown_regions[row][0]["worst"]
             if worst is not None and self._read_field():
                 self._sight().at_samples(self.field, [worst["sample"]], LEAST_SEEN * 2.0)
 
-    def go_to_cluster(self, row):
+    def go_to_cluster(self, row: int) -> None:
         """Looks at a cluster, marks it, and lists its motions."""
         if self.found is None or not 0 <= row < len(self.found["clusters"]):
             return
@@ -161,7 +180,7 @@ class VerdictDock(ObjectDock):
         samples = [cluster["worst"]["sample"], *np.flatnonzero(inside)]
         self._sight().at_samples(self.field, samples, size, middle)
 
-    def lay_here(self):
+    def lay_here(self) -> None:
         """A raster path on the cluster that is chosen, in its panel."""
         from ..common.transaction import transaction
         from ..panels.panel import edit
@@ -180,19 +199,19 @@ class VerdictDock(ObjectDock):
         if not step.failed:
             edit(path)
 
-    def _read_field(self):
+    def _read_field(self) -> bool:
         if self.field is None:
             self.field = objects.field_of(self.obj.Simulation)
         return self.field is not None
 
-    def _sight(self):
+    def _sight(self) -> Sight:
         if self.sight is None:
             self.sight = Sight(self.obj.getParentGroup())
         return self.sight
 
     # Motions
 
-    def _motion(self, row):
+    def _motion(self, row: int) -> tuple[DocumentObject | None, Any]:
         """(RobotPath or None, motion) of a row of the motions."""
         cluster = self.clusters.currentRow()
         if self.found is None or not 0 <= cluster < len(self.found["clusters"]):
@@ -209,7 +228,7 @@ class VerdictDock(ObjectDock):
             return paths[at], motion
         return (named[0] if named else None), motion
 
-    def show_motion(self, row):
+    def show_motion(self, row: int) -> None:
         """Draws the wheel at the motion's pose, and shows the pose and its line."""
         path, motion = self._motion(row)
         if path is None or motion["pose"] >= path.PoseCount:
@@ -229,11 +248,11 @@ class VerdictDock(ObjectDock):
 
         show_pose(path, motion["pose"], False)
 
-    def _pose_chosen(self, index):
+    def _pose_chosen(self, index: int) -> None:
         if self.wheel is not None:
             self.wheel.set_pose(index)
 
-    def _show_wheel(self, path, pose):
+    def _show_wheel(self, path: DocumentObject | None, pose: int) -> None:
         if self.wheel is not None:
             self.wheel.close()
             self.wheel = None
@@ -244,7 +263,7 @@ class VerdictDock(ObjectDock):
         self.wheel.set_path(path.Proxy.arrays(path)["frames"])
         self.wheel.set_pose(pose)
 
-    def open_program(self, row):
+    def open_program(self, row: int) -> None:
         """Opens the program's panel at the motion's pose."""
         from ..panels.program_panel import show_pose
 
@@ -255,17 +274,17 @@ class VerdictDock(ObjectDock):
 
     # What FreeCAD tells
 
-    def slotChangedObject(self, obj, name):
+    def slotChangedObject(self, obj: DocumentObject, name: str) -> None:
         if self.obj is not None and obj is self.obj and name in ("Shown", "OutOfDate"):
             QtCore.QTimer.singleShot(0, self.refresh)
 
-    def slotDeletedObject(self, obj):
+    def slotDeletedObject(self, obj: DocumentObject) -> None:
         if self.obj is None:
             return
         if obj == self.obj or obj == self.shown_path:
             self._forget()
 
-    def slotDeletedDocument(self, document):
+    def slotDeletedDocument(self, document: Document) -> None:
         try:
             other = self.obj is None or self.obj.Document != document
         except (ReferenceError, RuntimeError):
@@ -273,11 +292,11 @@ class VerdictDock(ObjectDock):
         if not other:
             self._forget()
 
-    def closeEvent(self, event):
+    def closeEvent(self, event: QtEvent) -> None:
         self._unmark()
         super().closeEvent(event)
 
-    def _unmark(self):
+    def _unmark(self) -> None:
         if self.wheel is not None:
             self.wheel.close()
         if self.scene is not None:
@@ -287,7 +306,7 @@ class VerdictDock(ObjectDock):
         self.wheel = self.scene = self.shown_path = self.sight = None
         self.poses.hide()
 
-    def _forget(self):
+    def _forget(self) -> None:
         self._unmark()
         self.obj = self.found = self.field = self.cluster_of = None
         forget_field()
@@ -298,7 +317,7 @@ class VerdictDock(ObjectDock):
             one.setRowCount(0)
 
 
-def _titled(title, widget):
+def _titled(title: str, widget: Widget) -> Widget:
     box = QtGui.QWidget()
     layout = QtGui.QVBoxLayout(box)
     layout.setContentsMargins(0, 0, 0, 0)

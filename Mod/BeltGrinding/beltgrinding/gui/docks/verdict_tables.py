@@ -1,13 +1,19 @@
 """What the verdict's dock writes into its tables and labels."""
 
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
 from ...inspection import finish_zones
 from ..common.compat import QtGui, translate
+from ..common.kinds import Colour, FaceName, Json, Table
 from ..common.messages import note_texts
 from ..common.theme import theme
 from ..common.verdict_words import shares
 
 
-def table(name, titles):
+def table(name: str, titles: Sequence[str]) -> Table:
     """An empty table whose rows are chosen as a whole."""
     made = QtGui.QTableWidget(0, len(titles))
     made.setObjectName(name)
@@ -22,7 +28,7 @@ def table(name, titles):
     return made
 
 
-def fill(made, rows):
+def fill(made: Table, rows: Sequence[Any]) -> None:
     """Puts rows (texts, colour or None) into a table."""
     made.blockSignals(True)
     made.setRowCount(len(rows))
@@ -38,7 +44,7 @@ def fill(made, rows):
     made.blockSignals(False)
 
 
-def word(verdict):
+def word(verdict: str) -> str:
     """A verdict in the user's language."""
     return {
         "pass": translate("BeltGrinding", "pass"),
@@ -47,7 +53,7 @@ def word(verdict):
     }[verdict]
 
 
-def doubts(found):
+def doubts(found: Json) -> str:
     """What the user must know besides, a line each."""
     lines = [
         shares(found),
@@ -85,14 +91,14 @@ def doubts(found):
 class _Rows:
     """A function that makes rows, and the titles of their columns, which wait for the language."""
 
-    def __init__(self, make, titles):
+    def __init__(self, make: Callable[..., list[Any]], titles: Callable[[], list[str]]) -> None:
         self.make, self.titles = make, titles
 
-    def __call__(self, *arguments):
+    def __call__(self, *arguments: Any) -> list[Any]:
         return self.make(*arguments)
 
 
-def _region_titles():
+def _region_titles() -> list[str]:
     return [
         translate("BeltGrinding", "Where"),
         translate("BeltGrinding", "Verdict"),
@@ -105,13 +111,13 @@ def _region_titles():
     ]
 
 
-def _colour(verdict):
+def _colour(verdict: str) -> Colour:
     look = theme()
     colour = {"pass": None, "fail": look.warning, "unknown": look.doubt}[verdict]
     return None if colour is None else QtGui.QColor(colour)
 
 
-def _regions(found, face_name):
+def _regions(found: Json, face_name: FaceName) -> list[Any]:
     """[(region, texts, colour)] of the zones, their thickness, and the faces."""
     rows = []
     for zone in found["zones"]:
@@ -136,7 +142,7 @@ def _regions(found, face_name):
     return rows
 
 
-def _finish(name, finish):
+def _finish(name: str, finish: Json) -> list[Any]:
     """[(region, texts, colour)] of what a zone calls for of its finish."""
     titles = {
         "Ra": translate("BeltGrinding", "{}: roughness").format(name),
@@ -167,7 +173,7 @@ def _finish(name, finish):
     return rows
 
 
-def _figures(region):
+def _figures(region: Json) -> list[str]:
     if region["worst"] is None:
         return [""] * 5
     worst = region["worst"]
@@ -175,7 +181,7 @@ def _figures(region):
     return [*shares, f"{worst['value_mm']:+.3f}", f"{worst['beyond_mm']:+.3f}"]
 
 
-def _thickness(thick):
+def _thickness(thick: Json) -> list[str]:
     if thick["worst"] is None:
         return [word(thick["verdict"]), *[""] * 6]
     worst = thick["worst"]
@@ -184,7 +190,7 @@ def _thickness(thick):
     return [word(thick["verdict"]), share, "", "", value, beyond, ""]
 
 
-def _cluster_titles():
+def _cluster_titles() -> list[str]:
     return [
         "",
         translate("BeltGrinding", "What"),
@@ -196,7 +202,7 @@ def _cluster_titles():
     ]
 
 
-def _clusters(found, face_name):
+def _clusters(found: Json, face_name: FaceName) -> list[Any]:
     """[(texts, None)] of the clusters, largest first."""
     sides = {
         "above": translate("BeltGrinding", "too much left"),
@@ -227,7 +233,7 @@ def _clusters(found, face_name):
     return rows
 
 
-def _motion_titles():
+def _motion_titles() -> list[str]:
     return [
         translate("BeltGrinding", "Share, %"),
         translate("BeltGrinding", "Line"),
@@ -237,7 +243,7 @@ def _motion_titles():
     ]
 
 
-def _motions(cluster, programs):
+def _motions(cluster: Json, programs: Sequence[str]) -> list[Any]:
     """[(texts, None)] of a cluster's motions, largest share first."""
     rows = []
     for motion in cluster["motions"]:

@@ -1,9 +1,12 @@
 """Task panel of the belt machine: only what its kind needs, with a drawing of it."""
 
+from __future__ import annotations
+
 from ...engine import InputError
 from ...objects import belt_machine as machines
 from ...objects.belt import Belt
 from ...objects.belt_machine import KIND_KEYS, LAYERS, layers_of
+from ...objects.kinds import Document, DocumentObject
 from ...objects.properties import set_value, to_job
 from ...objects.proxy import type_of
 from ..common.compat import translate
@@ -15,14 +18,14 @@ from .panel import Panel
 from .preset_form import HardnessField, PresetForm
 
 
-def _belts(document):
+def _belts(document: Document) -> list[DocumentObject]:
     return [obj for obj in document.Objects if type_of(obj) == Belt.TYPE]
 
 
 class BeltMachinePanel(Panel):
     """Edits a BeltMachine."""
 
-    def __init__(self, obj):
+    def __init__(self, obj: DocumentObject) -> None:
         title = translate("BeltGrinding", "Belt machine")
         super().__init__(obj, title, "BeltGrinding_BeltMachine")
         kind = Form(obj, translate("BeltGrinding", "Kind of machine"))
@@ -111,7 +114,7 @@ class BeltMachinePanel(Panel):
         self.finish()
         self.arrange()
 
-    def arrange(self):
+    def arrange(self) -> None:
         """Shows the fields that the kind, the elasticity and the control use."""
         of_wheel = self.obj.Kind in machines.WHEELS
         self.wheel.setVisible(of_wheel)
@@ -158,14 +161,14 @@ class BeltMachinePanel(Panel):
         self.hardness.follow()
         self.tell("")
 
-    def _layers_changed(self):
+    def _layers_changed(self) -> None:
         try:
             set_value(self.obj, LAYERS, self.layers.values())
         except InputError:
             return  # told below the rows, and again by OK
         self.drawing.update()
 
-    def apply(self):
+    def apply(self) -> None:
         if self.obj.Kind != machines.PLATEN:
             return
         wanted = self.layers.values()
@@ -173,7 +176,7 @@ class BeltMachinePanel(Panel):
         if layers_of(self.obj) != wanted or (self.obj.PlatenLayers and not wanted):
             set_value(self.obj, LAYERS, wanted)
 
-    def check(self):
+    def check(self) -> None:
         if self.obj.BeltSpeed.Value <= 0:
             raise InputError("gui.belt_speed", "The belt speed must be positive.")
         if self.obj.Kind in machines.WHEELS:
@@ -185,7 +188,7 @@ class BeltMachinePanel(Panel):
             machine["belt_machine"]["platen"]["layers"] = self.layers.values()
         machines.check_run(machine["belt_machine"])
 
-    def _check_wheel(self):
+    def _check_wheel(self) -> None:
         if self.obj.WheelRadius.Value <= 0:
             raise InputError("gui.wheel_radius", "The wheel's radius must be positive.")
         if self.obj.WheelWidth.Value <= 0:
@@ -209,7 +212,7 @@ class BeltMachinePanel(Panel):
             raise InputError("gui.poissons_ratio", "Poisson's ratio lies from 0 to 0.499.")
 
 
-def _run_form(obj):
+def _run_form(obj: DocumentObject) -> Form:
     """The belt between its rollers."""
     form = Form(obj, translate("BeltGrinding", "Belt between rollers"))
     form.add("RunLength", translate("BeltGrinding", "Free length"))
@@ -230,7 +233,7 @@ def _run_form(obj):
     return form
 
 
-def _frame_form(obj):
+def _frame_form(obj: DocumentObject) -> Form:
     """What holds the rollers, and the belt's way to them."""
     form = Form(obj, translate("BeltGrinding", "Frame, for collisions"))
     form.add("FrameLength", translate("BeltGrinding", "Rollers to pulleys (0: none)"))

@@ -1,8 +1,13 @@
 """Task panel of a belt: what it has done, a new one, and the count of a run."""
 
+from __future__ import annotations
+
+from collections.abc import Iterator
+
 from ...engine import InputError
 from ...objects import belt_machine, job_data
 from ...objects.job_object import BeltGrindingJob
+from ...objects.kinds import DocumentObject
 from ...objects.proxy import type_of
 from ...objects.simulation import Simulation
 from ..common.compat import QtGui, translate
@@ -14,7 +19,7 @@ from .panel import Panel
 class BeltPanel(Panel):
     """Edits a Belt."""
 
-    def __init__(self, obj):
+    def __init__(self, obj: DocumentObject) -> None:
         super().__init__(obj, translate("BeltGrinding", "Belt"), "BeltGrinding_Belt")
         self.fields = None
         self.place = QtGui.QVBoxLayout()
@@ -34,7 +39,7 @@ class BeltPanel(Panel):
         self.finish()
         self.fill()
 
-    def fill(self):
+    def fill(self) -> None:
         """The fields anew: the buttons change the properties."""
         if self.fields is not None:
             self.fields.setParent(None)
@@ -46,12 +51,12 @@ class BeltPanel(Panel):
         text = translate("BeltGrinding", "Remaining cut: {:.1f} % of a fresh belt's")
         self.left.setText(text.format(self.obj.RemainingCut))
 
-    def renew(self):
+    def renew(self) -> None:
         self.obj.Proxy.reset(self.obj)
         self.fill()
         self.tell(translate("BeltGrinding", "A new belt is on."))
 
-    def count(self):
+    def count(self) -> None:
         """Adds the use of the results of the jobs that run on this belt."""
         counted, refused = 0, []
         for simulation in self._simulations():
@@ -67,7 +72,7 @@ class BeltPanel(Panel):
             nothing = translate("BeltGrinding", "Simulate a job that runs on this belt first.")
             self.tell(refused[0] if refused else nothing, True)
 
-    def _simulations(self):
+    def _simulations(self) -> Iterator[DocumentObject]:
         for job in self.document.Objects:
             if type_of(job) != BeltGrindingJob.TYPE:
                 continue

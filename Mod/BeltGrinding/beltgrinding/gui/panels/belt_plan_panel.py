@@ -1,11 +1,17 @@
 """Task panel of a belt plan: parts and costs, progress, then when to change the belt, as figures and a chart."""
 
+from __future__ import annotations
+
+from typing import Any
+
 import FreeCADGui as Gui
 
 from ...engine import Cancelled, InputError
 from ...objects import preferences
+from ...objects.kinds import DocumentObject
 from ...planning import belt_chart, belt_plan
 from ..common.compat import QtCore, QtGui, translate
+from ..common.kinds import Context, Done, Json, Told, Widget
 from ..common.messages import error_text
 from ..common.runner import Runner
 from ..widgets.picture_label import PictureLabel
@@ -19,7 +25,7 @@ LARGE = 0.9  # of the screen
 FIRST_BELTS = 8  # that are told one by one
 
 
-def words():
+def words() -> dict[str, str]:
     """``belt_chart.WORDS`` in the window's language."""
     return {
         "title": translate("BeltGrinding", "{} parts, {} new belts, cost {:.2f}"),
@@ -35,11 +41,11 @@ def words():
 class _Runner(Runner):
     """``done((BeltPlan, Costs) or None, error or None)`` follows; the document is not written."""
 
-    def __init__(self, job, wanted, progress, done):
+    def __init__(self, job: DocumentObject, wanted: Json, progress: Told, done: Done) -> None:
         self.wanted = wanted
         super().__init__(job, progress, done)
 
-    def work(self, context):
+    def work(self, context: Context) -> tuple[Any, Any]:
         wanted = self.wanted
         part, _ = belt_plan.part_of(
             self.data, wanted["feed_min"], wanted["force_max"], wanted["follow"], context
@@ -47,7 +53,7 @@ class _Runner(Runner):
         costs = belt_plan.Costs(wanted["belt"], 60.0 * wanted["change"], wanted["minute"])
         return belt_plan.plan(self.data, part, costs, wanted["parts"]), costs
 
-    def _store(self, found):
+    def _store(self, found: Any) -> Any:
         if self.job() is None:
             raise Cancelled(translate("BeltGrinding", "the job was removed while it ran"))
         return found
@@ -56,7 +62,7 @@ class _Runner(Runner):
 class BeltPlanPanel(RunPanel):
     """Nothing of the job is changed; what was found is shown, and written into a folder if wanted."""
 
-    def __init__(self, job):
+    def __init__(self, job: DocumentObject) -> None:
         super().__init__(job, translate("BeltGrinding", "Belt plan"), "BeltGrinding_BeltPlan")
         self.found = None
         body = QtGui.QVBoxLayout(self.form)
@@ -88,7 +94,7 @@ class BeltPlanPanel(RunPanel):
         self._arrange(False)
         self._show_follow()
 
-    def _rows(self):
+    def _rows(self) -> None:
         self.parts = self._number("parts", translate("BeltGrinding", "Parts"), 500, 1, 100_000, 0)
         self.belt = self._number("beltCost", translate("BeltGrinding", "Cost of a belt"), 10.0)
         self.change = self._number(
@@ -117,7 +123,15 @@ class BeltPlanPanel(RunPanel):
             "forceMax", translate("BeltGrinding", "Greatest force, N"), 100.0, least=1e-3
         )
 
-    def _number(self, name, text, value, least=0.0, most=1e9, decimals=2):
+    def _number(
+        self,
+        name: str,
+        text: str,
+        value: float,
+        least: float = 0.0,
+        most: float = 1e9,
+        decimals: int = 2,
+    ) -> Widget:
         spin = steady(QtGui.QDoubleSpinBox() if decimals else QtGui.QSpinBox())
         spin.setObjectName(name)
         if decimals:
@@ -132,16 +146,16 @@ class BeltPlanPanel(RunPanel):
         self.fields.addRow(text, spin)
         return spin
 
-    def _show_follow(self):
+    def _show_follow(self) -> None:
         key = self.follow.currentData()
         for spin, shown in ((self.feed_min, key != "force"), (self.force_max, key != "feed")):
             spin.setVisible(shown)
             self.fields.labelForField(spin).setVisible(shown)
 
-    def doing(self):
+    def doing(self) -> str:
         return translate("BeltGrinding", "Planning, {}")
 
-    def make_runner(self):
+    def make_runner(self) -> Runner:
         kept = preferences.parameters()
         for spin in self.form.findChildren(QtGui.QDoubleSpinBox):
             spin.interpretText()
@@ -162,7 +176,7 @@ class BeltPlanPanel(RunPanel):
         self.found = None
         return _Runner(self.job, wanted, self.progress, self.done)
 
-    def show(self, found):
+    def show(self, found: Any) -> None:
         """Shows what was found: (BeltPlan, Costs)."""
         self.found = found
         plan, costs = found
@@ -192,7 +206,7 @@ class BeltPlanPanel(RunPanel):
         self.chart.show_bytes(belt_chart.draw(plan, small, **SMALL))
         self._arrange(False)
 
-    def enlarge(self):
+    def enlarge(self) -> None:
         """The chart in a window of its own."""
         if self.found is None:
             return
@@ -209,7 +223,7 @@ class BeltPlanPanel(RunPanel):
         QtGui.QVBoxLayout(window).addWidget(label)
         window.show()
 
-    def write(self):
+    def write(self) -> None:
         """Figures, a line a part and the chart, into a folder."""
         title = translate("BeltGrinding", "Folder for the belt plan")
         folder = QtGui.QFileDialog.getExistingDirectory(Gui.getMainWindow(), title)
@@ -223,7 +237,7 @@ class BeltPlanPanel(RunPanel):
         files = ", ".join(belt_plan.FILES)
         self._say(translate("BeltGrinding", "Written into {}: {}").format(folder, files))
 
-    def _arrange(self, running):
+    def _arrange(self, running: bool) -> None:
         super()._arrange(running)
         self.begin.setVisible(not running)
         self.save.setVisible(not running)
@@ -233,6 +247,6 @@ class BeltPlanPanel(RunPanel):
             self.fields.itemAt(k).widget().setEnabled(not running)
 
 
-def _narrow(field):
+def _narrow(field: Widget) -> None:
     field.setMinimumWidth(FIELD_WIDTH)
     field.setSizePolicy(QtGui.QSizePolicy.Ignored, QtGui.QSizePolicy.Fixed)

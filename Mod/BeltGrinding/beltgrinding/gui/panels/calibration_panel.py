@@ -1,13 +1,20 @@
 """Task panel: the law of removal fitted to a table of measured grinds."""
 
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
 import FreeCADGui as Gui
 
 from ...base.files import cannot_be_written, write_whole
 from ...calibration import calibrate as calibration, example, plot as calibration_plot
 from ...engine import Cancelled, InputError
 from ...objects import job_data, job_inputs, properties
+from ...objects.kinds import DocumentObject
 from ..common.compat import QtCore, QtGui, buttons, translate
 from ..common.icons import qicon
+from ..common.kinds import Buttons, Context, Json, Layout, Table, Widget
 from ..common.messages import error_text
 from ..common.runner import Background
 from ..common.save_dialog import file_to_write
@@ -33,11 +40,12 @@ TABLES = "Measured grinds (*.csv *.txt);;All files (*)"
 class CalibrationPanel:
     """Fits, shows the result, and on demand writes it into the job in one undo step."""
 
-    def __init__(self, job):
+    def __init__(self, job: DocumentObject) -> None:
         self.job = job
         self.task = self.result = None
         self.picture = QtGui.QPixmap()
         self.form = QtGui.QWidget()
+        self.form.destroyed.connect(lambda *_: self._gone())  # whatever closes it
         self.form.setWindowTitle(translate("BeltGrinding", "Calibrate removal law"))
         self.form.setWindowIcon(qicon("BeltGrinding_Calibrate"))
         body = QtGui.QVBoxLayout(self.form)
@@ -108,7 +116,7 @@ class CalibrationPanel:
         body.addStretch()
         self._show_parts(False)
 
-    def _number(self, fields, name, text, tip):
+    def _number(self, fields: Layout, name: str, text: str, tip: str) -> Widget:
         """An entry that may stay empty."""
         widget = QtGui.QLineEdit()
         widget.setObjectName(name)
@@ -121,13 +129,13 @@ class CalibrationPanel:
         fields.addRow(text, widget)
         return widget
 
-    def _button(self, body, text, action):
+    def _button(self, body: Layout, text: str, action: Callable[[], object]) -> Widget:
         button = QtGui.QPushButton(text)
         button.clicked.connect(lambda *_: action())
         body.addWidget(button)
         return button
 
-    def _table(self):
+    def _table(self) -> Table:
         table = QtGui.QTableWidget(0, 2)
         table.setObjectName("calibrationTable")
         table.setHorizontalHeaderLabels(
@@ -144,11 +152,11 @@ class CalibrationPanel:
         table.horizontalHeader().setStretchLastSection(True)
         return table
 
-    def _show_parts(self, on):
+    def _show_parts(self, on: bool) -> None:
         for widget in (self.table, self.plot, self.larger, self.warnings, self.use):
             widget.setVisible(on)
 
-    def save_example(self):
+    def save_example(self) -> None:
         """Writes a table of made-up grinds where the user says, and takes it."""
         title = translate("BeltGrinding", "Save an example")
         path = file_to_write(title, "grinds.csv", TABLES)
@@ -161,7 +169,7 @@ class CalibrationPanel:
             return
         self.file.setProperty("fileName", path)
 
-    def fit(self):
+    def fit(self) -> None:
         """Reads the table and fits, in a thread of its own."""
         path = str(self.file.property("fileName") or "")
         if not path:
@@ -180,17 +188,17 @@ class CalibrationPanel:
         self.start.setEnabled(False)
         self.state.setText(translate("BeltGrinding", "Fitting ..."))
 
-        def work(_):
+        def work(_: Context) -> tuple[Any, ...]:
             result = calibration.fit(path, diameter, unit, machine)
             report = result["report"]
             return result, calibration_plot.render(report), calibration_plot.render_small(report)
 
         self.task = Background(work, self.show, self.form)
 
-    def _entered(self, field):
+    def _entered(self, field: Widget) -> float | None:
         return float(field.text()) if field.text() and field.hasAcceptableInput() else None
 
-    def show(self, outcome, error):
+    def show(self, outcome: Any, error: BaseException | None) -> None:
         """Shows what the fit has found."""
         self.task = None
         self.start.setEnabled(True)
@@ -225,7 +233,7 @@ class CalibrationPanel:
         self._show_parts(True)
         self.warnings.setVisible(bool(report["warnings"]))
 
-    def _fill(self, parameters):
+    def _fill(self, parameters: Sequence[Json]) -> None:
         self.table.setRowCount(len(parameters))
         for row, one in enumerate(parameters):
             name = one["name"].replace("_", "\n", 1).replace("_", " ")
@@ -245,7 +253,7 @@ class CalibrationPanel:
         rows = sum(self.table.rowHeight(row) for row in range(len(parameters)))
         self.table.setFixedHeight(rows + self.table.horizontalHeader().sizeHint().height() + 4)
 
-    def enlarge(self):
+    def enlarge(self) -> None:
         """The plot in a window of its own."""
         window = QtGui.QDialog(self.form)
         window.setObjectName("calibrationWindow")
@@ -259,7 +267,7 @@ class CalibrationPanel:
         window.resize(self.picture.width() + 60, min(self.picture.height() + 60, 900))
         window.show()
 
-    def apply(self):
+    def apply(self) -> None:
         """Writes the law's parameters into the job's properties, in one undo step."""
         document = self.job.Document
         document.openTransaction(translate("BeltGrinding", "Calibrate removal law"))
@@ -274,11 +282,13 @@ class CalibrationPanel:
             translate("BeltGrinding", "{} uses the calibrated law.").format(self.job.Label)
         )
 
-    def getStandardButtons(self):
+    def getStandardButtons(self) -> Buttons:
         return buttons("Close")
 
-    def reject(self):
+    def _gone(self) -> None:
         if self.task is not None:
             self.task.abandon()
+
+    def reject(self) -> bool:
         Gui.Control.closeDialog()
         return True

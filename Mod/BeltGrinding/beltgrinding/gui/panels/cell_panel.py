@@ -1,13 +1,19 @@
 """Task panel of the cell: who holds what, the frames, the bodies; shown live at any pose."""
 
+from __future__ import annotations
+
+from typing import Any
+
 import FreeCADGui as Gui
 import numpy as np
 
 from ...objects.belt_machine import BODIES
 from ...objects.job_data import children
+from ...objects.kinds import DocumentObject
 from ...objects.proxy import type_of
 from ...objects.robot_path import RobotPath
 from ..common.compat import QtCore, QtGui, translate
+from ..common.kinds import Widget
 from ..widgets.form import Form
 from ..widgets.pose_walk import PoseWalk
 from .panel import Panel
@@ -20,12 +26,12 @@ WAIT = 200  # ms after the last change of a frame; long paths take a while to dr
 class CellPanel(Panel):
     """Edits the cell of a BeltMachine."""
 
-    def __init__(self, obj):
+    def __init__(self, obj: DocumentObject) -> None:
         super().__init__(obj, translate("BeltGrinding", "Cell"), "BeltGrinding_Cell")
         job = obj.getParentGroup()
         paths = [p for p in (children(job, RobotPath) if job else []) if p.Poses]
         self.walk = PoseWalk(obj.Document, obj, paths) if paths else None
-        self.drawn = QtCore.QTimer(self.form)
+        self.drawn = QtCore.QTimer()
         self.drawn.setSingleShot(True)
         self.drawn.timeout.connect(self.draw_paths)
         if self.walk:
@@ -51,7 +57,7 @@ class CellPanel(Panel):
         self.finish()
         self.arrange()
 
-    def _robot(self):
+    def _robot(self) -> RobotBox:
         self.robot = RobotBox(self.obj, self.walk.path)
         self.robot.changed = self.redraw
         self.robot.go = self.walk.go
@@ -59,17 +65,17 @@ class CellPanel(Panel):
         self.walk.moved = lambda _: self.show_joints()
         return self.robot
 
-    def followed(self, result):
+    def followed(self, result: Any) -> None:
         """The whole path was followed: the arm is drawn as it goes along it."""
         self.walk.view.robot.followed = result["joints"]
         self.walk.view.update()
         self.show_joints()
 
-    def show_joints(self):
+    def show_joints(self) -> None:
         joints = self.walk.view.robot.joints
         self.robot.show_joints(None if joints is None else np.degrees(joints))
 
-    def _bodies(self):
+    def _bodies(self) -> Widget:
         box = QtGui.QGroupBox(translate("BeltGrinding", "Bodies"))
         box.setToolTip(
             translate(
@@ -115,7 +121,7 @@ class CellPanel(Panel):
         self.fill()
         return box
 
-    def fill(self):
+    def fill(self) -> None:
         """Shows the bodies of all frames."""
         self.rows = [(name, obj) for name in BODIES for obj in getattr(self.obj, name)]
         self.list.clear()
@@ -123,7 +129,7 @@ class CellPanel(Panel):
             where = self.frame.itemText(list(BODIES).index(name))
             self.list.addItem(f"{obj.Label}: {where}")
 
-    def add_selected(self):
+    def add_selected(self) -> None:
         """Adds the objects that are selected in the tree or the view, to the chosen frame."""
         found = [
             one
@@ -142,7 +148,7 @@ class CellPanel(Panel):
         self.fill()
         self.redraw()
 
-    def remove(self):
+    def remove(self) -> None:
         row = self.list.currentRow()
         if row >= 0:
             name, gone = self.rows[row]
@@ -150,7 +156,7 @@ class CellPanel(Panel):
             self.fill()
             self.redraw()
 
-    def arrange(self):
+    def arrange(self) -> None:
         """Shows the frames that the holding uses; draws the cell as it is now."""
         frames = {
             "tool_in_hand": {"BaseFromWork", "TcpFromContact"},
@@ -169,17 +175,17 @@ class CellPanel(Panel):
                 translate("BeltGrinding", "Import a robot program to see the cell at its poses.")
             )
 
-    def draw_paths(self):
+    def draw_paths(self) -> None:
         """Draws the paths where the contact runs now."""
         for path in self.walk.paths:
             path.recompute()
 
-    def redraw(self):
+    def redraw(self) -> None:
         if self.walk:
             self.walk.view.rebuild()
             self.show_joints()
 
-    def close(self):
+    def close(self) -> None:
         self.drawn.stop()
         if self.walk:
             self.robot.close()

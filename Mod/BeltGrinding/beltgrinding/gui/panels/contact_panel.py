@@ -1,5 +1,9 @@
 """Task panel: the pressure on the wheel's footprint at any pose of a job's programs."""
 
+from __future__ import annotations
+
+from typing import Any
+
 import FreeCADGui as Gui
 import numpy as np
 
@@ -7,9 +11,11 @@ from ...contact import single_contact as contact
 from ...engine import Cancelled, InputError
 from ...objects import job_data, job_inputs
 from ...objects.belt_machine import WHEELS
+from ...objects.kinds import DocumentObject
 from ...objects.robot_path import RobotPath
 from ..common.compat import QtCore, QtGui, buttons, translate
 from ..common.icons import qicon
+from ..common.kinds import Buttons, Image, Json
 from ..common.messages import error_text
 from ..common.runner import Background
 from ..widgets.steady import steady
@@ -22,7 +28,7 @@ COLOURS = np.array(
 )
 
 
-def picture(result):
+def picture(result: Json) -> Image:
     """QImage of the pressure: x along the belt's travel to the right, y upwards."""
     pressure = result["pressure"][::-1]
     at = pressure / max(float(pressure.max()), 1e-12) * (len(COLOURS) - 1)
@@ -41,7 +47,7 @@ def picture(result):
 class ContactPanel:
     """Shows the contact at a pose; nothing in the document changes."""
 
-    def __init__(self, job):
+    def __init__(self, job: DocumentObject) -> None:
         self.paths = job_data.children(job, RobotPath)
         self.folder = job_inputs.scratch_folder()
         self.data = job_inputs.to_data(job, self.folder.name)
@@ -51,6 +57,7 @@ class ContactPanel:
         )
         self.task = None
         self.form = QtGui.QWidget()
+        self.form.destroyed.connect(lambda *_: self._gone())  # whatever closes it
         self.form.setWindowTitle(translate("BeltGrinding", "Contact at a pose"))
         self.form.setWindowIcon(qicon("BeltGrinding_Contact"))
         body = QtGui.QVBoxLayout(self.form)
@@ -86,7 +93,7 @@ class ContactPanel:
         self.program.currentIndexChanged.connect(self.choose)
         self.choose(0)
 
-    def choose(self, index):
+    def choose(self, index: int) -> None:
         """Another program: its poses, from the first that is not reached by a rapid motion."""
         path = self.paths[index]
         count = len(path.Poses)
@@ -96,7 +103,7 @@ class ContactPanel:
         self.number.setValue(min(first + 1, count))
         self.timer.start(0)
 
-    def compute(self):
+    def compute(self) -> None:
         """Presses the wheel at the chosen pose; a computation under way is given up."""
         if self.task is not None:
             self.task.cancel()
@@ -110,7 +117,7 @@ class ContactPanel:
             self.form,
         )
 
-    def show(self, result, error):
+    def show(self, result: Any, error: BaseException | None) -> None:
         self.task = None
         if isinstance(error, Cancelled):
             return
@@ -139,14 +146,16 @@ class ContactPanel:
             )
         )
 
-    def getStandardButtons(self):
+    def getStandardButtons(self) -> Buttons:
         return buttons("Close")
 
-    def reject(self):
-        self.timer.stop()
+    def _gone(self) -> None:
         if self.task is not None:
             self.task.abandon(self.folder.cleanup)
         else:
             self.folder.cleanup()
+
+    def reject(self) -> bool:
+        self.timer.stop()
         Gui.Control.closeDialog()
         return True

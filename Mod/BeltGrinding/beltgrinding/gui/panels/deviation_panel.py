@@ -1,9 +1,13 @@
 """Task panel of the deviation: the tolerance and the figures."""
 
+from __future__ import annotations
+
 from ...engine import InputError
 from ...objects import preferences
+from ...objects.kinds import DocumentObject
 from ...objects.simulation import is_coarse
 from ..common.compat import QtGui, translate
+from ..common.kinds import Quantity
 from ..common.messages import error_text
 from ..scene.probe import Probe
 from ..widgets.form import Form
@@ -16,7 +20,7 @@ TABLE_HEIGHT = 300  # pixels: all rows
 class DeviationPanel(Panel):
     """Edits the job's tolerance; the colours and the figures follow."""
 
-    def __init__(self, obj):
+    def __init__(self, obj: DocumentObject) -> None:
         title = translate("BeltGrinding", "Deviation")
         super().__init__(obj, title, "BeltGrinding_Deviation")
         form = Form(obj.getParentGroup(), translate("BeltGrinding", "Tolerance"))
@@ -55,7 +59,7 @@ class DeviationPanel(Panel):
         self.finish()
         self.update()
 
-    def _shown(self):
+    def _shown(self) -> dict[str, str]:
         """{name: text} of what the result has to colour by, and of what is chosen: without it, the deviation is shown."""
         obj = self.obj
         scanned = bool(getattr(obj.Simulation, "ScanFigures", ""))
@@ -77,7 +81,7 @@ class DeviationPanel(Panel):
         )
         return {name: text for name, text, there in modes if there or name == obj.ColourBy}
 
-    def update(self):
+    def update(self) -> None:
         """Colours and figures anew."""
         obj = self.obj
         rows = {"by tolerance": ["TimesTolerance"], "by percentile": ["Percentile"]}
@@ -96,7 +100,7 @@ class DeviationPanel(Panel):
         obj.Proxy.update(obj)
         self.tell(_doubt(obj), True)
 
-        def mm(value, sign="+"):
+        def mm(value: Quantity, sign: str = "+") -> str:
             return preferences.length_text(value.Value, 1, sign)
 
         rows = (
@@ -150,14 +154,14 @@ class DeviationPanel(Panel):
         self.table.resizeColumnsToContents()
         self.table.resizeRowsToContents()
 
-    def close(self):
+    def close(self) -> None:
         self.probe.release()
 
-    def check(self):
+    def check(self) -> None:
         check_tolerance(self.obj.getParentGroup())
 
 
-def _doubt(obj):
+def _doubt(obj: DocumentObject) -> str:
     """What must be known of a Deviation's figures; "" for sound ones."""
     if obj.OutOfDate:
         return translate("BeltGrinding", "Out of date: simulate again.")

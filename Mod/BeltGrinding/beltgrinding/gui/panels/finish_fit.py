@@ -1,12 +1,16 @@
 """A model of the finish fitted to a table of measured roughnesses: read and fitted in a thread, shown, saved, taken."""
 
+from __future__ import annotations
+
 import os
 from pathlib import Path
+from typing import Any
 
 from ...calibration import calibrate as calibration, finish, finish_table
 from ...engine import Cancelled, InputError
 from ...objects import job_inputs
 from ..common.compat import QtCore, QtGui, translate
+from ..common.kinds import Json, Table, Widget
 from ..common.messages import error_text
 from ..common.runner import TOLD, Background
 from ..common.save_dialog import file_to_write
@@ -20,18 +24,18 @@ WIDTH = 520  # pixels of the window, which must fit a small screen
 class FinishFit:
     """What the button *Fit...* of a ``FinishForm`` does; while it fits, the button ends that."""
 
-    def __init__(self, form):
+    def __init__(self, form: Widget) -> None:
         self.form, self.task, self.window = form, None, None
         self.clock = QtCore.QTimer(form)
         self.clock.setInterval(int(1000 * TOLD))
         self.clock.timeout.connect(lambda: self._tell_progress())
 
     @property
-    def busy(self):
+    def busy(self) -> bool:
         """Whether it fits."""
         return self.task is not None
 
-    def press(self):
+    def press(self) -> None:
         """Begins with a table that the user chooses, or ends the fit that goes on."""
         if self.busy:
             self.task.cancel()
@@ -42,7 +46,7 @@ class FinishFit:
         if path:
             self.begin(path)
 
-    def begin(self, path):
+    def begin(self, path: str) -> None:
         """Fits to the table in a thread of its own; what it tells comes in a window, what it refuses in the form."""
         try:
             wear = finish_table.wear_by(job_inputs.wear(self.form.job))
@@ -55,14 +59,14 @@ class FinishFit:
         self._tell_progress()
         self.clock.start()
 
-    def _tell_progress(self):
+    def _tell_progress(self) -> None:
         if self.busy:
             share = 100.0 * self.task.context.progress
             text = translate("BeltGrinding", "Fitting, {:.0f} %").format(share)
             self.form.told.setStyleSheet("")
             self.form.told.setText(text)
 
-    def _done(self, path, result, error):
+    def _done(self, path: str, result: Any, error: BaseException | None) -> None:
         self.task = None
         self.clock.stop()
         self.form.fit.setText(translate("BeltGrinding", "Fit..."))
@@ -78,7 +82,7 @@ class FinishFit:
         self.window = FitWindow(self.form, path, result)
         self.window.open()
 
-    def check(self):
+    def check(self) -> None:
         """Raises InputError while it fits."""
         if self.busy:
             raise InputError(
@@ -91,7 +95,7 @@ class FitWindow(QtGui.QDialog):
     """What a fit has found, with its intervals and what it warns of; saves the model where the user says, and has the
     form take it."""
 
-    def __init__(self, form, path, result):
+    def __init__(self, form: Widget, path: str, result: Json) -> None:
         super().__init__(form)
         self.form, self.path, self.result = form, path, result
         report = result["report"]
@@ -131,14 +135,14 @@ class FitWindow(QtGui.QDialog):
         body.addWidget(buttons)
         self.resize(WIDTH, self.heightForWidth(WIDTH))
 
-    def _label(self, name, text):
+    def _label(self, name: str, text: str) -> Widget:
         label = QtGui.QLabel(text)
         label.setObjectName(name)
         label.setWordWrap(True)
         label.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
         return label
 
-    def _table(self, report):
+    def _table(self, report: Json) -> Table:
         rows = [*report["parameters"]]
         if report["rest_per_pass"] is not None:
             rows.append({**report["rest_per_pass"], "name": "rest_per_pass", "free": True})
@@ -167,7 +171,7 @@ class FitWindow(QtGui.QDialog):
         table.setFixedHeight(height + table.horizontalHeader().sizeHint().height() + 4)
         return table
 
-    def save(self):
+    def save(self) -> None:
         """Writes the model into a file that the user names, and has the form read that."""
         own = Path(self.path)
         path = file_to_write(
@@ -192,7 +196,7 @@ class FitWindow(QtGui.QDialog):
         self.form.read_model(path)
 
 
-def _quality(report):
+def _quality(report: Json) -> str:
     """How well measurements are told by the others, beside plainer ways."""
     percent = lambda errors: (100.0 * errors["median"], 100.0 * errors["p90"])
     lines = [

@@ -1,9 +1,15 @@
 """What the finish (roughness, lay) is computed with; a part of the job's panel."""
 
+from __future__ import annotations
+
+from typing import Any
+
 from ...engine import InputError
 from ...objects.job_data import finish_model
+from ...objects.kinds import DocumentObject
 from ...simulation.finish import check_grit
 from ..common.compat import QtGui, translate
+from ..common.kinds import Json, Widget
 from ..widgets.form import WRONG
 from ..widgets.rows import shown
 from .finish_fit import FinishFit
@@ -16,7 +22,7 @@ ANGLE = 20.0  # degrees, the schema's
 class FinishForm(KeyForm):
     """Edits the property Finish of a job, which is a job file's ``finish`` as a text; empty: none."""
 
-    def __init__(self, job):
+    def __init__(self, job: DocumentObject) -> None:
         super().__init__(job, "Finish", translate("BeltGrinding", "Finish"), "finishChoice")
         self.before = {"crossing_angle_deg": ANGLE}  # what computing it again takes up
         self.box.addItems(
@@ -41,7 +47,7 @@ class FinishForm(KeyForm):
         self.rows.addRow(translate("BeltGrinding", "Measurements"), self._model_row())
         self.begin("finishNote")
 
-    def _model_row(self):
+    def _model_row(self) -> Widget:
         box = QtGui.QWidget()
         row = QtGui.QGridLayout(box)
         row.setContentsMargins(0, 0, 0, 0)
@@ -60,23 +66,23 @@ class FinishForm(KeyForm):
         row.addWidget(self.drop, 1, 0, 1, 2)
         return box
 
-    def _button(self, name, text, tip):
+    def _button(self, name: str, text: str, tip: str) -> Widget:
         button = QtGui.QPushButton(text)
         button.setObjectName(name)
         button.setToolTip(tip)
         return button
 
-    def index(self):
+    def index(self) -> int:
         return 0 if self.values is None else 1
 
-    def shown(self, key):
+    def shown(self, key: Any) -> str:
         return shown(self.values.get(key))
 
-    def show_values(self):
+    def show_values(self) -> None:
         super().show_values()
         self.arrange()
 
-    def arrange(self):
+    def arrange(self) -> None:
         """Lets press what can be pressed."""
         computed, free = self.values is not None, not self.fitting.busy
         self.fit.setEnabled(computed)
@@ -84,7 +90,7 @@ class FinishForm(KeyForm):
         self.load.setEnabled(computed and free)
         self.drop.setEnabled(free and "model" in (self.values or {}))
 
-    def chosen(self, index):
+    def chosen(self, index: int) -> None:
         if index:
             self.values = self.before
         else:
@@ -92,13 +98,13 @@ class FinishForm(KeyForm):
         self.show_values()
         self.typed()
 
-    def _browse(self):
+    def _browse(self) -> None:
         title = translate("BeltGrinding", "Measured roughness")
         path = QtGui.QFileDialog.getOpenFileName(self, title, "", "*.json")[0]
         if path:
             self.read_model(path)
 
-    def read_model(self, path):
+    def read_model(self, path: str) -> None:
         """Takes over what ``beltgrind calibrate-finish`` wrote; says so where the file is none."""
         try:
             model = finish_model(path)
@@ -107,7 +113,7 @@ class FinishForm(KeyForm):
             return
         self.take_model(model)
 
-    def take_model(self, model):
+    def take_model(self, model: Json | None) -> None:
         """Takes over a model, a job's ``finish.model``, in place of the one that was; None: takes it out."""
         values = {key: value for key, value in self.values.items() if key != "model"}
         if model is not None:
@@ -119,7 +125,7 @@ class FinishForm(KeyForm):
         self.show_values()
         self.typed()
 
-    def read(self):
+    def read(self) -> dict[str, Any] | None:
         found = super().read()
         if found is not None and "model" in found:
             try:
@@ -130,13 +136,13 @@ class FinishForm(KeyForm):
                 raise
         return found
 
-    def put(self, values, key, value):
+    def put(self, values: dict[str, Any], key: Any, value: Any) -> None:
         if value is None:
             values.pop(key, None)
         else:
             values[key] = value
 
-    def reason(self, key, value):
+    def reason(self, key: Any, value: float | None) -> str:
         if value is None:
             if key == "grit" and "model" in self.values:
                 low, high = self.values["model"]["ranges"]["grit"]
@@ -152,12 +158,12 @@ class FinishForm(KeyForm):
             return translate("BeltGrinding", "must lie from 0 to {}").format(90)
         return ""
 
-    def mistake(self, text, reason):
+    def mistake(self, text: str, reason: str) -> InputError:
         return InputError(
             "gui.finish_value", "Finish: '{text}': {reason}", text=text, reason=reason
         )
 
-    def lines(self):
+    def lines(self) -> list[str]:
         """What the measurements hold for, and what is not known."""
         model = self.values.get("model")
         if model is None:
@@ -182,7 +188,7 @@ class FinishForm(KeyForm):
             )
         return lines
 
-    def summary(self):
+    def summary(self) -> str:
         """One line of it."""
         if self.values is None:
             return self.box.currentText()
@@ -190,6 +196,6 @@ class FinishForm(KeyForm):
             return translate("BeltGrinding", "roughness and lay")
         return translate("BeltGrinding", "lay alone")
 
-    def check(self):
+    def check(self) -> None:
         self.fitting.check()
         super().check()

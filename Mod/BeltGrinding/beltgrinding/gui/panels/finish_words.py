@@ -1,11 +1,16 @@
 """What a model of the finish holds for and says, in the language of the window."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping
+
 from ..common.compat import translate
+from ..common.kinds import Json, Numbers
 
 RANGES = ("grit", "pressure_MPa", "belt_speed_m_s", "feed_mm_s", "remaining_cut")
 
 
-def spans(ranges):
+def spans(ranges: Mapping[str, Numbers]) -> str:
     """What was measured, by the ``ranges`` of a model; from least to greatest."""
     units = {
         "grit": translate("BeltGrinding", "grit"),
@@ -17,7 +22,7 @@ def spans(ranges):
     return "; ".join(f"{_span(*ranges[key])} {units[key]}" for key in RANGES)
 
 
-def exponents(model):
+def exponents(model: Json) -> str:
     """The exponents of a model's Ra; of what was not varied there is none."""
     return "; ".join(
         f"{model[key]:+.2g} {text}"
@@ -32,7 +37,7 @@ def exponents(model):
     )
 
 
-def parameter(name):
+def parameter(name: str) -> str:
     """What a parameter of the fit is called."""
     return {
         "coefficient_um": translate("BeltGrinding", "Ra at the references, µm"),
@@ -45,5 +50,5 @@ def parameter(name):
     }[name]
 
 
-def _span(low, high):
+def _span(low: float, high: float) -> str:
     return f"{low:.4g} … {high:.4g}" if low < high else f"{low:.4g}"

@@ -1,8 +1,14 @@
 """What temperatures are computed with: a material of the presets, and its values; a part of the job's panel."""
 
+from __future__ import annotations
+
+from typing import Any
+
 from ...engine import InputError
+from ...objects.kinds import DocumentObject
 from ...presets import library as presets
 from ..common.compat import QtCore, QtGui, translate
+from ..common.kinds import Json
 from ..widgets.rows import number, shown
 from .key_form import KeyForm
 from .preset_form import short
@@ -15,7 +21,7 @@ START = 20.0  # °C, the schema's
 class HeatForm(KeyForm):
     """Edits the property Heat of a job, which is a job file's ``heat`` as a text; empty: no temperatures."""
 
-    def __init__(self, job):
+    def __init__(self, job: DocumentObject) -> None:
         title = translate("BeltGrinding", "Temperatures")
         super().__init__(job, "Heat", title, "thermalPreset")
         self.found = presets.library().thermals
@@ -51,12 +57,12 @@ class HeatForm(KeyForm):
             self.rows.addRow(text, pair)
         self.begin("heatNote")
 
-    def shown(self, key):
+    def shown(self, key: Any) -> str:
         name, end = key
         value = self.values.get(name, START if name == "start_temperature_C" else 0.0)
         return shown(value[end] if name in PAIRS else value)
 
-    def index(self):
+    def index(self) -> int:
         """The row of the preset whose values these are, else that of own ones."""
         if self.values is None:
             return 0
@@ -69,7 +75,7 @@ class HeatForm(KeyForm):
                 return k
         return self.box.count() - 1
 
-    def chosen(self, index):
+    def chosen(self, index: int) -> None:
         if index == 0:
             self.values = None
         elif index <= len(self.found):
@@ -84,7 +90,7 @@ class HeatForm(KeyForm):
         self.show_values()
         self.write()
 
-    def read(self):
+    def read(self) -> dict[str, Any] | None:
         values = super().read()
         if values is None:
             return None
@@ -97,14 +103,14 @@ class HeatForm(KeyForm):
             values["material"] = ""
         return values
 
-    def put(self, values, key, value):
+    def put(self, values: dict[str, Any], key: Any, value: Any) -> None:
         name, end = key
         if name in PAIRS:
             values[name][end] = value
         else:
             values[name] = value
 
-    def reason(self, key, value):
+    def reason(self, key: Any, value: float | None) -> str:
         name, end = key
         if value is None:
             return translate("BeltGrinding", "This is no number: {}").format("''")
@@ -123,12 +129,12 @@ class HeatForm(KeyForm):
                 return translate("BeltGrinding", "the greatest lies below the least")
         return ""
 
-    def mistake(self, text, reason):
+    def mistake(self, text: str, reason: str) -> InputError:
         return InputError(
             "gui.heat_value", "Temperatures: '{text}': {reason}", text=text, reason=reason
         )
 
-    def lines(self):
+    def lines(self) -> list[str]:
         index = self.box.currentIndex()
         of_preset = short(self.found[index - 1]) if 0 < index <= len(self.found) else []
         return [
@@ -139,12 +145,12 @@ class HeatForm(KeyForm):
             ),
         ]
 
-    def summary(self):
+    def summary(self) -> str:
         """One line of it."""
         return self.box.currentText()
 
 
-def _part(preset):
+def _part(preset: Json) -> dict[str, Any]:
     """A job's ``heat`` of a preset."""
     found = presets.settings(thermal=preset)
     return {key[len(PREFIX) :]: value for key, value in found.items()}

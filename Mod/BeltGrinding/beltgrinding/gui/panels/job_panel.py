@@ -1,13 +1,21 @@
 """Task panel of the job: the faces, sampling, tolerance, timing, law."""
 
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
 import FreeCADGui as Gui
 
 from ...engine import Cancelled, InputError
 from ...objects import first_settings, job_data, sides
 from ...objects.belt_machine import WHEELS, BeltMachine
+from ...objects.kinds import Document, DocumentObject
 from ...objects.raster_path import RasterPath, proposed, replace_proposed
 from ...objects.stock import Stock
+from ..common import gates
 from ..common.compat import QtGui, translate
+from ..common.kinds import Widget
 from ..common.messages import error_text
 from ..scene.face_tint import FaceTint
 from ..widgets.fold import Fold
@@ -22,13 +30,13 @@ MANY = 2_000_000  # samples; more are warned of
 SAMPLE_BYTES = 400  # of memory in a run, about
 
 
-def check_tolerance(job):
+def check_tolerance(job: DocumentObject) -> None:
     """Raises InputError if a job's tolerance is upside down."""
     if job.ToleranceLower > job.ToleranceUpper:
         raise InputError("gui.limits_swapped", "The lower limit lies above the upper limit.")
 
 
-def mark_tolerance(form, job):
+def mark_tolerance(form: Form, job: DocumentObject) -> None:
     """Marks the fields of a job's tolerance in a form if it is upside down."""
     try:
         check_tolerance(job)
@@ -42,14 +50,14 @@ def mark_tolerance(form, job):
 class FaceGate:
     """Lets faces and whole parts be selected."""
 
-    def allow(self, document, obj, sub):
+    def allow(self, document: Document, obj: DocumentObject, sub: str | None) -> bool:
         return hasattr(obj, "Shape") and (not sub or sub.rpartition(".")[2].startswith("Face"))
 
 
 class JobPanel(Panel):
     """Edits a BeltGrindingJob."""
 
-    def __init__(self, obj):
+    def __init__(self, obj: DocumentObject) -> None:
         super().__init__(obj, translate("BeltGrinding", "Belt-grinding job"), "BeltGrinding_Job")
         self.first = getattr(obj.Proxy, "proposed", None)  # values of a new job, from its part
         self.body.addWidget(self._faces())
@@ -94,7 +102,8 @@ class JobPanel(Panel):
         sampling.changed = self.estimate
         self.timing.changed = self.arrange_timing
         self.finish()
-        Gui.Selection.addSelectionGate(FaceGate())
+        self.gate = FaceGate()
+        gates.hold(self.gate)
         self.tint = FaceTint(self.document)
         self.chosen = self._numbers()
         self.kind = self._kind()
@@ -104,7 +113,14 @@ class JobPanel(Panel):
         self.law.changed = self.estimate
         self.estimate()
 
-    def _fold(self, name, content, summary, title="", folded=False):
+    def _fold(
+        self,
+        name: str,
+        content: Widget,
+        summary: Callable[[], str],
+        title: str = "",
+        folded: bool = False,
+    ) -> None:
         """Adds a part of the panel that folds."""
         if isinstance(content, QtGui.QGroupBox):
             title = title or content.title()
@@ -113,16 +129,16 @@ class JobPanel(Panel):
         self.body.addWidget(fold)
         self.folds.append(fold)
 
-    def _sampling_text(self):
+    def _sampling_text(self) -> str:
         lower, upper = (f"{v.Value:+g}" for v in (self.obj.ToleranceLower, self.obj.ToleranceUpper))
         spacing = self.obj.Spacing
         chosen = translate("BeltGrinding", "spacing chosen")
         return f"{lower} … {upper} mm; {spacing.UserString if spacing.Value > 0 else chosen}"
 
-    def _law_text(self):
+    def _law_text(self) -> str:
         return f"K = {self.obj.LawCoefficient:.3g} mm²/N" if self.obj.Law != "geometric" else ""
 
-    def _whole(self):
+    def _whole(self) -> Iterator[Fold]:
         """Stock, machine and passes, in short; each has a panel of its own with all there is to it."""
         new = self.first is not None
         stock = job_data.child(self.obj, Stock)
@@ -167,12 +183,12 @@ class JobPanel(Panel):
             title = translate("BeltGrinding", "Passes")
             yield Fold("foldPasses", title, box, lambda: paths[0].Feed.UserString)
 
-    def arrange_timing(self):
+    def arrange_timing(self) -> None:
         """Shows the accelerations only where they matter."""
         trapezoidal = self.obj.Timing == "trapezoidal"
         self.timing.show_rows(self.timing.rows if trapezoidal else {"Timing"})
 
-    def _faces(self):
+    def _faces(self) -> Widget:
         box = QtGui.QGroupBox(translate("BeltGrinding", "Faces to be ground"))
         layout = QtGui.QVBoxLayout(box)
         self.list = QtGui.QListWidget()
@@ -200,11 +216,11 @@ class JobPanel(Panel):
         self.fill()
         return box
 
-    def pairs(self):
+    def pairs(self) -> list[tuple[DocumentObject, str]]:
         """[(object, face name or '' for all)] of the job."""
         return [(obj, sub) for obj, subs in self.obj.DesignFaces for sub in (subs or ("",))]
 
-    def fill(self):
+    def fill(self) -> None:
         self.list.clear()
         parts = {obj for obj, _ in self.pairs()}
         self.flipping.setVisible(any(sides.loose_faces(obj.Shape) for obj in parts))
@@ -213,7 +229,7 @@ class JobPanel(Panel):
             flipped = translate("BeltGrinding", "flipped") if (obj, sub) in self.flips() else ""
             self.list.addItem(f"{obj.Label}: {sub or everything}" + (flipped and f" ({flipped})"))
 
-    def add_selected(self):
+    def add_selected(self) -> None:
         """Adds the faces that are selected in the 3D view."""
         found = []
         for one in Gui.Selection.getSelectionEx(self.document.Name):
@@ -225,15 +241,15 @@ class JobPanel(Panel):
             return
         self.set_pairs(self.pairs() + [pair for pair in found if pair not in self.pairs()])
 
-    def remove(self):
+    def remove(self) -> None:
         rows = {index.row() for index in self.list.selectedIndexes()}
         self.set_pairs([pair for i, pair in enumerate(self.pairs()) if i not in rows])
 
-    def flips(self):
+    def flips(self) -> list[tuple[DocumentObject, str]]:
         """[(object, face name or '' for all)] of the faces that are flipped."""
         return [(obj, sub) for obj, subs in self.obj.FlipFaces for sub in (subs or ("",))]
 
-    def flip(self):
+    def flip(self) -> None:
         """Flips the loose ones of the faces that are chosen in the list, or else in the 3D view."""
         pairs, rows = self.pairs(), sorted(index.row() for index in self.list.selectedIndexes())
         chosen = [pairs[row] for row in rows] or [
@@ -264,14 +280,14 @@ class JobPanel(Panel):
         self.fill()
         self.estimate()
 
-    def set_pairs(self, pairs):
+    def set_pairs(self, pairs: Sequence[tuple[DocumentObject, str]]) -> None:
         self.obj.DesignFaces = [(obj, (sub,)) for obj, sub in pairs]
         self.fill()
         if self.first is not None and "feed_mm_s" in self.first and pairs:
             self.propose()
         self.estimate()
 
-    def propose(self):
+    def propose(self) -> None:
         """Looks at other faces; what the user has changed stays."""
         text = translate("BeltGrinding", "Looking at the part for first values")
         try:
@@ -287,12 +303,12 @@ class JobPanel(Panel):
                 if form.obj.getTypeIdOfProperty(name) in QUANTITIES | NUMBERS:
                     form.refresh(name)
 
-    def _kind(self):
+    def _kind(self) -> str | None:
         """Of the belt machine; None where there is none."""
         machine = job_data.child(self.obj, BeltMachine)
         return machine and machine.Kind
 
-    def _numbers(self):
+    def _numbers(self) -> list[Any]:
         """What the feed of a new job was chosen by, and the feed."""
         job, paths = self.obj, job_data.children(self.obj, RasterPath)
         stock, machine = job_data.child(job, Stock), job_data.child(job, BeltMachine)
@@ -307,7 +323,7 @@ class JobPanel(Panel):
             [(path.Feed.Value, path.StepOverShare) for path in paths if proposed(path)],
         ]
 
-    def estimate(self):
+    def estimate(self) -> None:
         """Says what the settings will cost; a new job gets other ones where its machine becomes another kind."""
         if self.machine is not None:
             self.machine.arrange()
@@ -373,7 +389,7 @@ class JobPanel(Panel):
                 )
         self.tell("\n".join(lines), count > MANY)
 
-    def check(self):
+    def check(self) -> None:
         if self.obj.Spacing.Value < 0:
             raise InputError("gui.spacing", "The sample spacing must not be negative.")
         check_tolerance(self.obj)
@@ -381,11 +397,11 @@ class JobPanel(Panel):
         self.texture.check()
         job_data.design(self.obj)
 
-    def apply(self):
+    def apply(self) -> None:
         if self.passes is not None and not self.passes.isChecked():
             replace_proposed(self.obj)
 
-    def close(self):
-        self.obj.Proxy.proposed = None
-        Gui.Selection.removeSelectionGate()
+    def close(self) -> None:
+        gates.release(self.gate)
         self.tint.close()
+        self.obj.Proxy.proposed = None

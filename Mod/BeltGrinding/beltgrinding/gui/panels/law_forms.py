@@ -1,5 +1,8 @@
 """The fields of the law of removal and of the belt's wear."""
 
+from __future__ import annotations
+
+from ...objects.kinds import DocumentObject
 from ..common.compat import QtGui, translate
 from ..widgets.form import SIGNED, Form
 
@@ -7,7 +10,7 @@ from ..widgets.form import SIGNED, Form
 class LawForms(QtGui.QWidget):
     """Edits a job's law; shows what the chosen law uses."""
 
-    def __init__(self, obj):
+    def __init__(self, obj: DocumentObject) -> None:
         super().__init__()
         self.obj = obj
         self.changed = lambda: None
@@ -58,11 +61,11 @@ class LawForms(QtGui.QWidget):
             layout.addWidget(form)
         self.arrange()
 
-    def _arrange_and_tell(self):
+    def _arrange_and_tell(self) -> None:
         self.arrange()
         self.changed()
 
-    def arrange(self):
+    def arrange(self) -> None:
         """Shows the fields of the chosen law, and of the curves' alternatives those in use."""
         obj, rows = self.obj, {"Law", "HeatLimit", "PressureLimit"}
         if obj.Law != "geometric":

@@ -1,13 +1,16 @@
 """The belt machine in short, in the job's panel; all there is to it is in its own panel."""
 
+from __future__ import annotations
+
 from ...objects import belt_machine as machines
+from ...objects.kinds import DocumentObject
 from ..common.compat import translate
 from ..widgets.form import Form
 
 OF_WHEEL, OF_BELT = {"WheelRadius", "WheelWidth"}, {"RunLength", "RunWidth"}
 
 
-def kinds():
+def kinds() -> dict[str, str]:
     """What the kinds of machines are called."""
     return {
         machines.WHEEL: translate("BeltGrinding", "Contact wheel"),
@@ -20,7 +23,7 @@ def kinds():
 class MachineForm(Form):
     """Of a BeltMachine."""
 
-    def __init__(self, machine):
+    def __init__(self, machine: DocumentObject) -> None:
         super().__init__(machine, "")
         self.add("Kind", translate("BeltGrinding", "Kind"), kinds())
         self.add("WheelRadius", translate("BeltGrinding", "Wheel radius"))
@@ -31,12 +34,12 @@ class MachineForm(Form):
         self.add("BeltSpeed", translate("BeltGrinding", "Belt speed"))
         self.arrange()
 
-    def arrange(self):
+    def arrange(self) -> None:
         """Shows the rows of the machine's kind."""
         of_kind = OF_WHEEL if self.obj.Kind in machines.WHEELS else OF_BELT
         self.show_rows({"Kind", "Force", "BeltSpeed"} | of_kind)
 
-    def summary(self):
+    def summary(self) -> str:
         """What the machine is, in a few words."""
         if self.obj.Kind in machines.WHEELS:
             return f"R {self.obj.WheelRadius.Value:g} × {self.obj.WheelWidth.Value:g} mm"

@@ -1,13 +1,17 @@
 """Base of the task panels: one undo transaction each, accepted or taken back."""
 
+from __future__ import annotations
+
 import re
 
 import FreeCAD
 import FreeCADGui as Gui
 
 from ...engine import InputError
+from ...objects.kinds import Document, DocumentObject
 from ..common.compat import QtGui, buttons, translate
 from ..common.icons import qicon
+from ..common.kinds import Buttons
 from ..common.messages import error_text
 from ..common.theme import warning_style
 from ..widgets.fold import slim
@@ -17,7 +21,7 @@ LONG = re.compile(r"\S{20,}")  # names and paths that may be wider than the dock
 BREAK = "\u200b"  # where a line may end; it has no width
 
 
-def breakable(text):
+def breakable(text: str) -> str:
     """A message whose long names and paths may be broken, so that it is no wider than the dock."""
     return LONG.sub(lambda word: word.group().replace("_", "_" + BREAK), text)
 
@@ -29,7 +33,7 @@ class Panel:
     Cancel aborts it.
     """
 
-    def __init__(self, obj, title, icon_name):
+    def __init__(self, obj: DocumentObject, title: str, icon_name: str) -> None:
         self.obj = obj
         self.document = obj.Document
         self.form = QtGui.QWidget()
@@ -40,32 +44,52 @@ class Panel:
         self.note.setObjectName("note")
         self.note.setWordWrap(True)
         self.note.hide()
+        self.ended = False
+        self.form.destroyed.connect(lambda *_: self._gone())
 
-    def finish(self):
+    def finish(self) -> None:
         """Puts the line for messages above the fields, under the buttons; call it last in __init__."""
         self.body.insertWidget(0, self.note)
         self.body.addStretch()
         slim(self.form)
 
-    def tell(self, text, error=False):
+    def tell(self, text: str, error: bool = False) -> None:
         """A message in the panel; '' hides it."""
         self.note.setText(breakable(text))
         self.note.setStyleSheet(warning_style(error))
         self.note.setVisible(bool(text))
 
-    def check(self):
+    def check(self) -> None:
         """Raises InputError for what must be mended before OK."""
 
-    def apply(self):
+    def apply(self) -> None:
         """What OK does once all is checked, before the document is recomputed."""
 
-    def close(self):
-        """Called when the panel goes, whatever the button."""
+    def close(self) -> None:
+        """Called once when the panel goes, whatever closes it; its widgets may have gone before."""
 
-    def getStandardButtons(self):
+    def end(self) -> None:
+        """Calls ``close``, unless that was done."""
+        if not self.ended:
+            self.ended = True
+            self.close()
+
+    def _gone(self) -> None:
+        """The form is deleted. Where a macro or another command has closed the panel, no button has ended it: what
+        was entered stays, as a step that can be undone."""
+        if self.ended:
+            return
+        try:
+            self.end()
+            if not Gui.Control.activeDialog():  # or the step is another panel's by now
+                self.document.commitTransaction()
+        except ReferenceError:
+            pass  # the document was closed with it
+
+    def getStandardButtons(self) -> Buttons:
         return buttons("Ok", "Cancel")
 
-    def accept(self):
+    def accept(self) -> bool:
         try:
             for form in self.form.findChildren(QtGui.QGroupBox):
                 if isinstance(form, Form):
@@ -76,21 +100,21 @@ class Panel:
             FreeCAD.Console.PrintWarning(f"{self.obj.Label}: {error_text(error)}\n")
             return False
         self.apply()
-        self.close()
+        self.end()
         self.document.recompute()
         self.document.commitTransaction()
         _leave(self.document)
         return True
 
-    def reject(self):
-        self.close()
+    def reject(self) -> bool:
+        self.end()
         self.document.abortTransaction()  # before leaving: resetEdit commits what is open
         _leave(self.document)
         self.document.recompute()
         return True
 
 
-def _leave(document):
+def _leave(document: Document) -> None:
     gui = Gui.getDocument(document.Name)
     if gui.getInEdit() is not None:
         gui.resetEdit()
@@ -98,7 +122,7 @@ def _leave(document):
         Gui.Control.closeDialog()
 
 
-def edit(obj):
+def edit(obj: DocumentObject) -> None:
     """Opens the panel of an object, as a double click does, in an undo transaction."""
     if Gui.Control.activeDialog():
         FreeCAD.Console.PrintWarning(

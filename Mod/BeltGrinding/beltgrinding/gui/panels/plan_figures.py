@@ -1,11 +1,18 @@
 """What a plan found, in its panel: rounds, before and after side by side, why the rest stays, a picture."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
 import FreeCADGui as Gui
 
 from ...objects import preferences
+from ...objects.kinds import DocumentObject
 from ...planning import pictures, reasons
 from ..common.compat import QtCore, QtGui, translate
 from ..charts.feed_chart import FeedChart
+from ..common.kinds import Json, Table, Texts
 from ..widgets.picture_label import PictureLabel
 
 LARGE = 0.9  # of the screen
@@ -14,7 +21,7 @@ LARGE = 0.9  # of the screen
 class PlanFigures(QtGui.QWidget):
     """``words``: as ``pictures.WORDS``."""
 
-    def __init__(self, words):
+    def __init__(self, words: Texts) -> None:
         super().__init__()
         self.words, self.obj = words, None
         body = QtGui.QVBoxLayout(self)
@@ -48,14 +55,14 @@ class PlanFigures(QtGui.QWidget):
         for widget in (self.rounds, self.table, self.checked, self.why, self.reasons, self.picture):
             body.addWidget(widget)
 
-    def clear(self):
+    def clear(self) -> None:
         """Shows nothing, before the first round."""
         self.obj = None
         self.show_rounds([])
         for widget in (self.table, self.checked, self.why, self.reasons, self.picture):
             widget.hide()
 
-    def show_rounds(self, rounds):
+    def show_rounds(self, rounds: Sequence[Json]) -> None:
         """The rounds so far, as ``planning.Plan.rounds``."""
         self.rounds.setVisible(bool(rounds))
         self.rounds.setRowCount(len(rounds))
@@ -68,7 +75,7 @@ class PlanFigures(QtGui.QWidget):
             number += "change" not in one
         _fit(self.rounds)
 
-    def show_plan(self, obj):
+    def show_plan(self, obj: DocumentObject) -> None:
         """What a Plan object holds."""
         self.obj, data = obj, obj.Proxy.data(obj)
         self.show_rounds([*data.get("tried", []), *data["rounds"]])
@@ -77,10 +84,10 @@ class PlanFigures(QtGui.QWidget):
 
         unit = preferences.deviation_unit()
 
-        def percent(key):
+        def percent(key: str) -> list[str]:
             return [f"{100.0 * one[key]:.1f} %" for one in (before, after)]
 
-        rows = (
+        rows: tuple[Any, ...] = (
             (translate("BeltGrinding", "In tolerance"), percent("in_tolerance")),
             (translate("BeltGrinding", "Too much left"), percent("above")),
             (translate("BeltGrinding", "Cut too deep"), percent("below")),
@@ -120,7 +127,7 @@ class PlanFigures(QtGui.QWidget):
             widget.setVisible(bool(told))
         self.picture.show_file(obj.Strip)
 
-    def enlarge(self):
+    def enlarge(self) -> None:
         """Picture and chart in a window of their own."""
         if self.obj is None:
             return
@@ -146,7 +153,7 @@ class PlanFigures(QtGui.QWidget):
         window.show()
 
 
-def _round(number, one):
+def _round(number: int, one: Json) -> tuple[str, str, str, str]:
     """The texts of a row: a round of a plan, or passes that were tried."""
     share = f"{100.0 * one['in_tolerance']:.1f} %"
     if "change" in one:
@@ -164,7 +171,7 @@ def _round(number, one):
     return name, share, rms, f"{one['process_time_s']:.1f}"
 
 
-def _passes(one):
+def _passes(one: Json) -> str:
     """What a row of passes that were tried says in full."""
     if "change" not in one:
         return ""
@@ -174,7 +181,7 @@ def _passes(one):
     return text.format(one["step_over_mm"], one["run_out_mm"], one["repeats"], one["poses"])
 
 
-def _table(name, *columns, stretched=0):
+def _table(name: str, *columns: str, stretched: int = 0) -> Table:
     table = QtGui.QTableWidget(0, len(columns))
     table.setObjectName(name)
     table.setHorizontalHeaderLabels(list(columns))
@@ -191,7 +198,7 @@ def _table(name, *columns, stretched=0):
     return table
 
 
-def _fit(table):
+def _fit(table: Table) -> None:
     """Makes a table as high as its rows."""
     table.resizeRowsToContents()
     rows = sum(table.rowHeight(row) for row in range(table.rowCount()))

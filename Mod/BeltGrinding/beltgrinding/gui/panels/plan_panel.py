@@ -1,16 +1,21 @@
 """Task panel of a plan: its limits, its rounds while it runs, before and after, and Apply."""
 
+from __future__ import annotations
+
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import FreeCADGui as Gui
 
 from ...engine import InputError
 from ...objects import api, plan as planned
+from ...objects.kinds import DocumentObject
 from ...objects.proxy import type_of
 from ...objects.deviation import Deviation
 from ...objects.job_data import child
 from ..charts.feed_chart import FeedChart
 from ..common.compat import QtGui, translate
+from ..common.kinds import Widget
 from ..common.messages import error_text
 from ..common.plan_runner import PlanRunner, words
 from ..common.transaction import transaction
@@ -21,12 +26,15 @@ from .plan_figures import PlanFigures
 from .run_panel import RunPanel
 from .simulation_panel import lay_deviation
 
+if TYPE_CHECKING:
+    from ..common.runner import Runner
+
 
 class PlanPanel(RunPanel):
     """Settings go into the Plan object as they are typed; what was found is shown, and goes into the paths by
     Apply."""
 
-    def __init__(self, obj):
+    def __init__(self, obj: DocumentObject) -> None:
         super().__init__(
             obj.getParentGroup(), translate("BeltGrinding", "Plan"), "BeltGrinding_Plan"
         )
@@ -65,7 +73,7 @@ class PlanPanel(RunPanel):
         self._enable()
         self.show(None)
 
-    def _limits(self):
+    def _limits(self) -> Widget:
         box = Form(self.obj, translate("BeltGrinding", "Limits"))
         goals = {
             "tolerance": translate("BeltGrinding", "most in tolerance"),
@@ -102,7 +110,7 @@ class PlanPanel(RunPanel):
         self._show_goal()
         return box
 
-    def _show_goal(self):
+    def _show_goal(self) -> None:
         rows = set(self.limits.rows)
         if self.obj.Goal != "time" and not self.obj.Probability:
             rows.discard("WantedShare")
@@ -110,7 +118,7 @@ class PlanPanel(RunPanel):
             rows.discard("PlacementDeviation")
         self.limits.show_rows(rows)
 
-    def _changes(self):
+    def _changes(self) -> Fold:
         box = Form(self.obj, "")
         box.add("FeedChange", translate("BeltGrinding", "Change of feed, mm/s per mm"))
         box.add("Acceleration", translate("BeltGrinding", "Acceleration"))
@@ -124,19 +132,19 @@ class PlanPanel(RunPanel):
             "foldChanges", translate("BeltGrinding", "Change, pressure, heat"), box, folded=True
         )
 
-    def _has_passes(self):
+    def _has_passes(self) -> bool:
         try:
             return planned.passes_of(self.job) is not None
         except InputError:
             return False
 
-    def _by_force(self):
+    def _by_force(self) -> bool:
         from ...objects.belt_machine import BeltMachine
 
         machine = child(self.job, BeltMachine)
         return machine is None or machine.Control == "force"
 
-    def _rounds(self):
+    def _rounds(self) -> Fold:
         box = Form(self.obj, "")
         box.add("Rounds", translate("BeltGrinding", "Rounds, at most"))
         resolutions = {
@@ -155,32 +163,32 @@ class PlanPanel(RunPanel):
         self.fold = Fold("foldRounds", translate("BeltGrinding", "Rounds"), box, folded=True)
         return self.fold
 
-    def doing(self):
+    def doing(self) -> str:
         return translate("BeltGrinding", "Planning, {}")
 
-    def start(self):
+    def start(self) -> None:
         self._commit()
         self.fold.fold(True)
         self.found = None
         self.document.recompute()
         super().start()
 
-    def make_runner(self):
+    def make_runner(self) -> Runner:
         for form in (self.limits, self.changes, self.rounds):
             form.check()
         self._check_kept()
         return PlanRunner(self.obj, self.progress, self.done)
 
-    def progress(self, share):
+    def progress(self, share: float) -> None:
         super().progress(share)
         self.figures.show_rounds(self.runner.rounds)
 
-    def done(self, found, error):
+    def done(self, found: Any, error: BaseException | None) -> None:
         super().done(found, error)
         if type_of(self.obj) == planned.Plan.TYPE:
             self._open()
 
-    def show(self, found):
+    def show(self, found: Any) -> None:
         """Shows the plan that the document has. ``found``: the ``plan.Found``, if it was made just now."""
         self.found = found
         self._arrange(False)
@@ -198,7 +206,7 @@ class PlanPanel(RunPanel):
         self.chart.show_plan(obj)
         self._tell_state()
 
-    def _tell_state(self):
+    def _tell_state(self) -> None:
         obj = self.obj
         if obj.OutOfDate:
             text = translate("BeltGrinding", "Out of date: an input has changed since; plan again.")
@@ -221,7 +229,7 @@ class PlanPanel(RunPanel):
         self._say(text, obj.OutOfDate)
         self._enable()
 
-    def put_in(self):
+    def put_in(self) -> None:
         """Apply: feeds and forces into the paths, and the planned result into the job, as one undo step."""
         self._commit()
         made = child(self.job, Deviation) is None
@@ -237,7 +245,7 @@ class PlanPanel(RunPanel):
         if not step.failed:
             self._tell_state()
 
-    def write_programs(self):
+    def write_programs(self) -> None:
         """The programs' files with the planned feeds, into a folder."""
         title = translate("BeltGrinding", "Folder for the planned programs")
         folder = QtGui.QFileDialog.getExistingDirectory(Gui.getMainWindow(), title)
@@ -256,13 +264,13 @@ class PlanPanel(RunPanel):
             told.append(text.format(", ".join(without)))
         self._say("\n".join(told))
 
-    def _changed(self):
+    def _changed(self) -> None:
         self._show_goal()
         self.obj.Proxy.update(self.obj)
         if self.obj.Fingerprint:
             self._tell_state()
 
-    def _keep(self):
+    def _keep(self) -> None:
         try:
             wanted = kept_motions.parsed(self.kept.text(), planned.sources(self.job))
         except InputError:
@@ -272,24 +280,24 @@ class PlanPanel(RunPanel):
         self.obj.Keep = kept_motions.stored(wanted)
         self._changed()
 
-    def _check_kept(self):
+    def _check_kept(self) -> None:
         kept_motions.parsed(self.kept.text(), planned.sources(self.job))
 
-    def _choose(self):
+    def _choose(self) -> None:
         self._enable()
 
-    def _keep_chosen(self):
+    def _keep_chosen(self) -> None:
         """Adds the motions that are chosen in the chart to those that stay."""
         added = kept_motions.of_chart(self.chart, planned.sources(self.job))
         self.kept.setText(", ".join(filter(None, [self.kept.text().strip(), added])))
 
-    def _open(self):
+    def _open(self) -> None:
         self.document.openTransaction(translate("BeltGrinding", "Settings of the plan"))
 
-    def _commit(self):
+    def _commit(self) -> None:
         self.document.commitTransaction()
 
-    def _arrange(self, running):
+    def _arrange(self, running: bool) -> None:
         super()._arrange(running)
         self.begin.setVisible(not running)
         for widget in (self.limits, self.changes, self.rounds):
@@ -302,7 +310,7 @@ class PlanPanel(RunPanel):
             widget.setVisible(there and not running)
         self._enable()
 
-    def _enable(self):
+    def _enable(self) -> None:
         obj, there = self.obj, bool(self.obj.Fingerprint)
         useful = there and obj.Better and not obj.OutOfDate
         self.apply.setEnabled(useful and not obj.Applied)
@@ -311,13 +319,13 @@ class PlanPanel(RunPanel):
             there and self.chart.isVisibleTo(self.form) and self.chart.chosen is not None
         )
 
-    def reject(self):
+    def reject(self) -> bool:
         self._commit()
         self.document.recompute()
         return super().reject()
 
 
-def show(obj, run=False):
+def show(obj: DocumentObject, run: bool = False) -> None:
     """Opens the panel of a Plan object; ``run``: and plans."""
     if obj.getParentGroup() is not None and not Gui.Control.activeDialog():
         panel = PlanPanel(obj)

@@ -1,17 +1,26 @@
 """Presets and the rubber's hardness in the belt machine's panel; both only set properties."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Sequence
 from itertools import groupby
+from typing import TYPE_CHECKING
 
 from ...engine import InputError
 from ...objects import belt_machine, job_data, job_object
+from ...objects.kinds import DocumentObject
 from ...objects.properties import set_value
 from ...objects.proxy import type_of
 from ...presets import library as presets, rubber
 from ..common.compat import QtCore, QtGui, translate
+from ..common.kinds import Json, Widget
 from ..common.messages import error_text
 from ..common.theme import warning_style
 from ..widgets.steady import steady
+
+if TYPE_CHECKING:
+    from ..widgets.form import Form
 
 YOUNGS_MODULUS = next(key for key in belt_machine.KEYS if key.name == "YoungsModulus")
 
@@ -25,7 +34,7 @@ class HardnessField:
     It keeps nothing in the document: a modulus that is changed afterwards empties it.
     """
 
-    def __init__(self, form):
+    def __init__(self, form: Form) -> None:
         self.form = form
         self.line = QtGui.QLineEdit()
         self.line.setObjectName("ShoreA")
@@ -50,11 +59,11 @@ class HardnessField:
         form.rows["ShoreA"] = (label, field)
         self.line.textChanged.connect(self._changed)
 
-    def show(self, shore_a):
+    def show(self, shore_a: float) -> None:
         """Shows a hardness and sets the modulus by it."""
         self.line.setText(f"{shore_a:g}")
 
-    def follow(self):
+    def follow(self) -> None:
         """Empties the field when the modulus no longer follows from it."""
         if not self.line.hasAcceptableInput():
             return
@@ -66,7 +75,7 @@ class HardnessField:
         if not math.isclose(self.form.obj.YoungsModulus.Value, set_by_it, rel_tol=1e-5):
             self.line.clear()
 
-    def _changed(self, text):
+    def _changed(self, text: str) -> None:
         try:
             if self.line.hasAcceptableInput():
                 shore_a = float(text)
@@ -79,7 +88,7 @@ class HardnessField:
         self.text.setVisible(bool(text))
 
 
-def _formulas_text():
+def _formulas_text() -> str:
     lines = [translate("BeltGrinding", "Young's modulus E in MPa from the Shore A hardness S:")]
     for one in rubber.formulas().values():
         lines.append(f"{one['name']}: {one['equation']} ({one['least']:g} to {one['greatest']:g})")
@@ -91,7 +100,7 @@ class PresetForm(QtGui.QGroupBox):
     recommended belt speed only by its button.
     """
 
-    def __init__(self, obj, forms, hardness):
+    def __init__(self, obj: DocumentObject, forms: Sequence[Form], hardness: HardnessField) -> None:
         super().__init__(translate("BeltGrinding", "Presets"))
         self.obj, self.forms, self.hardness = obj, forms, hardness
         self.boxes, self.labels, self.hints = (
@@ -121,7 +130,7 @@ class PresetForm(QtGui.QGroupBox):
             wrong.show()
             self.rows.addRow(wrong)
 
-    def show_kind(self, kind):
+    def show_kind(self, kind: str) -> None:
         """Shows the presets that a kind of belt machine has: a wheel's only of a contact wheel."""
         for widgets in (self.labels, self.boxes):
             widgets["wheel"].setVisible(kind in belt_machine.WHEELS)
@@ -129,7 +138,7 @@ class PresetForm(QtGui.QGroupBox):
             kind in belt_machine.WHEELS and bool(self.hints["wheel"].text())
         )
 
-    def _add(self, kind, text, found):
+    def _add(self, kind: str, text: str, found: Sequence[Json]) -> None:
         box, hint = steady(QtGui.QComboBox()), _hint(f"{kind}PresetHint")
         self.boxes[kind] = box
         box.setObjectName(f"{kind}Preset")
@@ -150,7 +159,7 @@ class PresetForm(QtGui.QGroupBox):
             lambda i: self._chosen(kind, found[i - 1] if i > 0 else None, hint)
         )
 
-    def _chosen(self, kind, preset, hint):
+    def _chosen(self, kind: str, preset: Json | None, hint: Widget) -> None:
         lines = presets.describe(preset) if preset else []
         hint.setText("\n".join(short(preset)) if preset else "")
         hint.setToolTip("\n".join(lines))
@@ -166,7 +175,7 @@ class PresetForm(QtGui.QGroupBox):
         if kind == "wheel" and preset and "shore_a" in preset and "youngs_modulus" not in preset:
             self.hardness.show(presets.middle(preset["shore_a"]))
 
-    def _put(self, values):
+    def _put(self, values: Json) -> None:
         """Sets the properties of the machine and of its job that mirror the job's keys."""
         jobs = [o for o in self.obj.InList if type_of(o) == job_object.BeltGrindingJob.TYPE]
         targets = [(self.obj, belt_machine.ALL_KEYS), *((job, job_data.KEYS) for job in jobs)]
@@ -181,7 +190,7 @@ class PresetForm(QtGui.QGroupBox):
             form.changed()
 
 
-def _hint(name):
+def _hint(name: str) -> Widget:
     label = QtGui.QLabel()
     label.setObjectName(name)
     label.setWordWrap(True)
@@ -189,7 +198,7 @@ def _hint(name):
     return label
 
 
-def short(preset):
+def short(preset: Json) -> list[str]:
     """What the preset says, by source and without its page, which the tool tip has."""
     lines = [preset["text"]] if "text" in preset else []
     numbers = presets.numbers(preset).items()

@@ -1,10 +1,14 @@
 """Task panel of a robot program."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 from ...engine import Cancelled, InputError
 from ...objects import program_values, robot_path, stored_facts
+from ...objects.kinds import DocumentObject
 from ..common.compat import QtGui, translate
+from ..common.kinds import Json
 from ..common.messages import error_text
 from ..common.report_language import language
 from ..widgets.form import Form
@@ -14,10 +18,10 @@ from .panel import Panel, edit
 
 SHOWN_PROBLEMS = stored_facts.MOST  # more are kept in English only
 TABLE_HEIGHT = 260  # pixels
-_open = []  # the panel that is open
+_open: list[ProgramPanel] = []  # the panel that is open
 
 
-def show_pose(obj, index, opening):
+def show_pose(obj: DocumentObject, index: int, opening: bool) -> None:
     """Selects the pose ``index`` (from 0) of a RobotPath in its panel, if that is open or with
     ``opening``, which opens it.
     """
@@ -32,7 +36,7 @@ class ProgramPanel(Panel):
     """Edits a RobotPath: its file, its overrides; shows its poses, their source, what could not be
     resolved. A pose chosen in the view, the table, the source or by the slider is chosen in all."""
 
-    def __init__(self, obj):
+    def __init__(self, obj: DocumentObject) -> None:
         title = translate("BeltGrinding", "Robot program")
         super().__init__(obj, title, "BeltGrinding_ImportProgram")
         form = Form(obj, translate("BeltGrinding", "Program"))
@@ -84,13 +88,13 @@ class ProgramPanel(Panel):
         self.show()
         _open.append(self)
 
-    def changed(self):
+    def changed(self) -> None:
         if self.obj.Source != self.source or robot_path.roll_text(self.obj) != self.roll:
             self.reload()
         else:
             self.describe()
 
-    def reload(self):
+    def reload(self) -> None:
         """Reads the file, or follows the path, again; on an error the poses stay as they were."""
         values = self.obj.Values
         try:
@@ -111,7 +115,7 @@ class ProgramPanel(Panel):
             return
         self.show()
 
-    def give(self, data, save=False):
+    def give(self, data: Json, save: bool = False) -> None:
         """Reads the file with what a person says of it; on an error all stays as it was. ``save``: writes it
         beside the program, too."""
         try:
@@ -129,7 +133,7 @@ class ProgramPanel(Panel):
         except InputError as error:
             self.tell(error_text(error), True)
 
-    def show(self):
+    def show(self) -> None:
         """Poses, source and problems as they are now."""
         obj = self.obj
         rows = set(self.overrides.rows)
@@ -154,7 +158,7 @@ class ProgramPanel(Panel):
             self.table.setCurrentWidget(self.values)  # where it gets them from
         self.describe()
 
-    def show_values(self):
+    def show_values(self) -> None:
         """What the program asks for, and what is given."""
         at = self.table.indexOf(self.values)
         if at >= 0:
@@ -173,7 +177,7 @@ class ProgramPanel(Panel):
             text = translate("BeltGrinding", "Values ({} missing)").format(missing)
             self.table.addTab(self.values, text)
 
-    def show_problems(self):
+    def show_problems(self) -> None:
         """The list of problems: many of a kind in one line, or each place."""
         each, count = self.each.isChecked(), len(self.obj.Problems)
         most = None if each else SHOWN_PROBLEMS
@@ -185,7 +189,7 @@ class ProgramPanel(Panel):
             self.problems.addItem(more)
         self.each.setVisible(each or self.problems.count() < count)
 
-    def describe(self):
+    def describe(self) -> None:
         """Figures of the path."""
         obj = self.obj
         if "Touched" in obj.State:
@@ -205,7 +209,7 @@ class ProgramPanel(Panel):
             text += "\n" + note.format(", ".join(replaced))
         self.tell(text)
 
-    def close(self):
+    def close(self) -> None:
         _open.remove(self)
-        self.obj.Proxy.replaced = []
         self.walk.release()
+        self.obj.Proxy.replaced = []

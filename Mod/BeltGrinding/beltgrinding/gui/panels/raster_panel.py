@@ -1,12 +1,18 @@
 """Task panel of a raster path; the passes in the 3D view follow every change."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
+
 import FreeCAD
 import FreeCADGui as Gui
 
 from ...engine import Cancelled, InputError
 from ...objects import raster_path, stored_facts
+from ...objects.kinds import DocumentObject
 from ...objects.raster_path import NO_PASS, NO_ROOM
 from ..common.compat import QtCore, QtGui, translate
+from ..common.kinds import Changed, Widget
 from ..common.messages import error_text
 from ..common.report_language import language
 from ..scene.left_out import COLOURS
@@ -20,10 +26,10 @@ SHOWN_WARNINGS = 20
 class RasterPanel(Panel):
     """Edits a RasterPath."""
 
-    def __init__(self, obj):
+    def __init__(self, obj: DocumentObject) -> None:
         title = translate("BeltGrinding", "Raster path")
         super().__init__(obj, title, "BeltGrinding_RasterPath")
-        self.timer = QtCore.QTimer(self.form)
+        self.timer = QtCore.QTimer()
         self.timer.setSingleShot(True)
         self.timer.timeout.connect(self.compute)
         self.left = QtGui.QLabel()
@@ -48,7 +54,7 @@ class RasterPanel(Panel):
         self.arrange()
         self.compute()
 
-    def _faces(self):
+    def _faces(self) -> Widget:
         box = QtGui.QGroupBox(translate("BeltGrinding", "Faces"))
         row = QtGui.QHBoxLayout(box)
         self.faces = QtGui.QLabel()
@@ -62,7 +68,7 @@ class RasterPanel(Panel):
         self.name_faces()
         return box
 
-    def _region(self):
+    def _region(self) -> Widget:
         box = QtGui.QGroupBox(translate("BeltGrinding", "Region"))
         rows = QtGui.QVBoxLayout(box)
         self.region = QtGui.QLabel()
@@ -85,7 +91,7 @@ class RasterPanel(Panel):
         self.name_region()
         return box
 
-    def name_region(self):
+    def name_region(self) -> None:
         """Shows where passes are wanted."""
         points = self.obj.RegionPoints
         text = translate("BeltGrinding", "everywhere on the faces")
@@ -98,15 +104,15 @@ class RasterPanel(Panel):
             )
         self.region.setText(text)
 
-    def take_left(self):
+    def take_left(self) -> None:
         """Lays passes only where the last result is above the tolerance."""
         self._take(raster_path.to_what_is_left)
 
-    def take_others(self):
+    def take_others(self) -> None:
         """Lays passes only where other wheels do not get to."""
         self._take(raster_path.to_what_others_leave)
 
-    def _take(self, region):
+    def _take(self, region: Callable[[DocumentObject], object]) -> None:
         try:
             region(self.obj)
         except InputError as error:
@@ -115,13 +121,13 @@ class RasterPanel(Panel):
         self.name_region()
         self.changed()
 
-    def take_all(self):
+    def take_all(self) -> None:
         """Lays passes everywhere again."""
         raster_path.set_region(self.obj, [])
         self.name_region()
         self.changed()
 
-    def _passes(self):
+    def _passes(self) -> Form:
         form = Form(self.obj, translate("BeltGrinding", "Passes"))
         along = {
             "u": translate("BeltGrinding", "u of each face"),
@@ -159,7 +165,7 @@ class RasterPanel(Panel):
         form.changed = self.changed
         return form
 
-    def _process(self):
+    def _process(self) -> Form:
         form = Form(self.obj, translate("BeltGrinding", "Process"))
         ways = {
             "plunge": translate("BeltGrinding", "Along the normal"),
@@ -184,7 +190,7 @@ class RasterPanel(Panel):
         form.changed = self.changed
         return form
 
-    def _posing(self):
+    def _posing(self) -> Form:
         form = Form(self.obj, translate("BeltGrinding", "Poses"))
         collisions = {
             "tilt": translate("BeltGrinding", "Tilt, else leave out"),
@@ -203,7 +209,7 @@ class RasterPanel(Panel):
         form.changed = self.changed
         return form
 
-    def name_faces(self):
+    def name_faces(self) -> None:
         """Shows which faces the passes lie on."""
         everything = translate("BeltGrinding", "all faces")
         texts = [
@@ -212,7 +218,7 @@ class RasterPanel(Panel):
         ]
         self.faces.setText("\n".join(texts))
 
-    def take_selected(self):
+    def take_selected(self) -> None:
         """Lays the passes on the faces that are selected in the 3D view."""
         links = []
         for one in Gui.Selection.getSelectionEx(self.document.Name):
@@ -226,7 +232,7 @@ class RasterPanel(Panel):
         self.name_faces()
         self.changed()
 
-    def arrange(self):
+    def arrange(self) -> None:
         """Shows the fields that the choices use."""
         hidden = set()
         if self.obj.Along != "direction":
@@ -243,11 +249,11 @@ class RasterPanel(Panel):
         tilts = self.obj.WhereItCollides == "tilt"
         self.posing.show_rows(set(self.posing.rows) - (set() if tilts else {"MaxTilt"}))
 
-    def changed(self):
+    def changed(self) -> None:
         self.arrange()
         self.timer.start(WAIT)
 
-    def compute(self):
+    def compute(self) -> None:
         """Lays the passes and shows what came out."""
         self.timer.stop()
         way = self.obj.Along
@@ -291,7 +297,7 @@ class RasterPanel(Panel):
         self.warnings.addItems(stored_facts.sentences(obj, "Warnings", language(), SHOWN_WARNINGS))
         self.warnings.setVisible(bool(obj.Warnings))
 
-    def _tell_left(self):
+    def _tell_left(self) -> None:
         """What the passes leave out, in the colours that it has on the part."""
         words = (
             (NO_ROOM, self.obj.LeftOut, translate("BeltGrinding", "without room")),
@@ -305,19 +311,19 @@ class RasterPanel(Panel):
         self.left.setText("<br>".join(lines))
         self.left.setVisible(bool(lines))
 
-    def check(self):
+    def check(self) -> None:
         self.timer.stop()
         raster_path.generate(self.obj)
         self.obj.Proposed = False
 
-    def close(self):
+    def close(self) -> None:
         self.timer.stop()
 
 
 class DirectionField(QtGui.QWidget):
     """x, y, z of the property Direction; a selected straight edge can give them."""
 
-    def __init__(self, obj, changed, tell):
+    def __init__(self, obj: DocumentObject, changed: Changed, tell: Callable[..., object]) -> None:
         super().__init__()
         self.obj, self.changed, self.tell = obj, changed, tell
         grid = QtGui.QGridLayout(self)
@@ -339,19 +345,19 @@ class DirectionField(QtGui.QWidget):
         button.clicked.connect(self.take_edge)
         grid.addWidget(button, 1, 0, 1, 3)
 
-    def _typed(self, *_):
+    def _typed(self, *_: object) -> None:
         if all(line.hasAcceptableInput() for line in self.fields):
             self.obj.Direction = tuple(float(line.text()) for line in self.fields)
             self.changed()
 
-    def refresh(self):
+    def refresh(self) -> None:
         """Shows the property as it is."""
         for line, value in zip(self.fields, self.obj.Direction):
             line.blockSignals(True)
             line.setText(f"{value:g}")
             line.blockSignals(False)
 
-    def take_edge(self):
+    def take_edge(self) -> None:
         """The direction from end to end of the edge that is selected."""
         for one in Gui.Selection.getSelectionEx(self.obj.Document.Name):
             for name, sub in zip(one.SubElementNames, one.SubObjects):

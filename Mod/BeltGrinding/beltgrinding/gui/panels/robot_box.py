@@ -1,14 +1,20 @@
 """The robot in the cell's panel: which one, where it stands, what it meets along the program."""
 
+from __future__ import annotations
+
 import json
+from collections.abc import Callable, Iterator
+from typing import Any
 
 from ...cell import arm_check
 from ...engine import Cancelled, InputError, core
 from ...objects import job_inputs
+from ...objects.kinds import DocumentObject
 from ...presets import library as presets, robot as robots
-from ...presets.robot_shape import LINKS
+from ...geometry.body_names import LINKS
 from ..common import event_texts
 from ..common.compat import QtGui, translate
+from ..common.kinds import Context, Numbers
 from ..common.messages import error_text
 from ..common.runner import Background
 from ..widgets.form import FrameField
@@ -23,7 +29,7 @@ class RobotBox(QtGui.QGroupBox):
     """Edits the robot of a BeltMachine. ``changed()`` follows every edit; ``found(result)`` a check
     of the path that ``path()`` gives; ``go(pose)`` asks for a pose, from 0."""
 
-    def __init__(self, machine, path):
+    def __init__(self, machine: DocumentObject, path: Callable[[], DocumentObject]) -> None:
         super().__init__(translate("BeltGrinding", "Robot"))
         self.machine, self.path = machine, path
         self.changed = self.found = self.go = lambda *_: None
@@ -74,23 +80,23 @@ class RobotBox(QtGui.QGroupBox):
         self.choice.currentIndexChanged.connect(self._choose)
         self._arrange()
 
-    def _choose(self, index):
+    def _choose(self, index: int) -> None:
         self._set("Robot", self.ids[index])
         self._arrange()
 
-    def _set(self, name, value):
+    def _set(self, name: str, value: Any) -> None:
         if getattr(self.machine, name) != value:
             setattr(self.machine, name, value)
             self.forget()
             self.changed()
 
-    def _arrange(self):
+    def _arrange(self) -> None:
         some = bool(self.ids[self.choice.currentIndex()])
         for widget in self.fields:
             widget.setVisible(some)
         self.list.setVisible(some and bool(self.events))
 
-    def forget(self):
+    def forget(self) -> None:
         """What was found no longer holds."""
         if self.task is not None:
             self.task.cancel()
@@ -98,7 +104,7 @@ class RobotBox(QtGui.QGroupBox):
         self.list.clear()
         self.list.hide()
 
-    def show_joints(self, joints):
+    def show_joints(self, joints: Numbers | None) -> None:
         """Joint angles (6,) in degrees at the pose, None: out of reach."""
         if joints is None:
             self.joints.setText(translate("BeltGrinding", "Out of reach at this pose."))
@@ -106,7 +112,7 @@ class RobotBox(QtGui.QGroupBox):
         angles = ", ".join(f"{angle:.1f}" for angle in joints)
         self.joints.setText(translate("BeltGrinding", "Joints: {}°").format(angles))
 
-    def start(self):
+    def start(self) -> None:
         """Follows the whole program in the background, with what the arm may meet."""
         self.forget()
         obj = self.path()
@@ -127,13 +133,13 @@ class RobotBox(QtGui.QGroupBox):
             self.unchecked = error_text(error)
         self.check.setEnabled(False)
 
-        def work(context):
+        def work(context: Context) -> Any:
             with folder:
                 return arm_check.follow(path, robot, job, context)
 
         self.task = Background(work, self._done, self)
 
-    def _done(self, result, error):
+    def _done(self, result: Any, error: BaseException | None) -> None:
         self.task = None
         self.check.setEnabled(True)
         if isinstance(error, Cancelled):
@@ -153,7 +159,7 @@ class RobotBox(QtGui.QGroupBox):
         self.list.show()
         self.found(result)
 
-    def _notes(self, result):
+    def _notes(self, result: Any) -> Iterator[str]:
         """What stands below the events."""
         if not self.events:
             yield translate(
@@ -174,11 +180,11 @@ class RobotBox(QtGui.QGroupBox):
             first, second = (event_texts.body(name) for name in nearest["bodies"])
             yield text.format(first, nearest["distance"], second)
 
-    def _chosen(self, row):
+    def _chosen(self, row: int) -> None:
         if 0 <= row < len(self.events):
             self.go(self.events[row]["pose"])
 
-    def close(self):
+    def close(self) -> None:
         """The panel goes: a check under way is given up."""
         if self.task is not None:
             self.task.abandon()

@@ -1,18 +1,27 @@
 """Base of the task panels that run something in the background: progress, time left, Cancel, errors."""
 
+from __future__ import annotations
+
 import time
 import traceback
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 import FreeCAD
 import FreeCADGui as Gui
 
 from ...engine import Cancelled, InputError
+from ...objects.kinds import DocumentObject
 from ..common.compat import QtGui, buttons, translate
 from ..common.icons import qicon
+from ..common.kinds import Buttons, Widget
 from ..common.messages import error_text
 from ..common.status_progress import StatusProgress, painted_once
 from ..common.theme import warning_style
 from ..common.time_left import TimeLeft, duration
+
+if TYPE_CHECKING:
+    from ..common.runner import Runner
 
 
 class RunPanel:
@@ -20,7 +29,7 @@ class RunPanel:
     show and hide their own in ``_arrange``.
     """
 
-    def __init__(self, job, title, icon_name):
+    def __init__(self, job: DocumentObject, title: str, icon_name: str) -> None:
         self.job = job
         self.runner = self.status = None
         self.form = QtGui.QWidget()
@@ -34,25 +43,25 @@ class RunPanel:
         self.bar.setRange(0, 1000)
         self.cancel = self._button("cancel", translate("BeltGrinding", "Cancel"), self.stop)
 
-    def doing(self):
+    def doing(self) -> str:
         """What goes on, with {} for the time."""
         raise NotImplementedError
 
-    def make_runner(self):
+    def make_runner(self) -> Runner:
         """A Runner that calls ``progress`` and ``done``. Raises InputError for what is missing."""
         raise NotImplementedError
 
-    def show(self, simulation):
+    def show(self, simulation: Any) -> None:
         """Shows the Simulation object, or None."""
         raise NotImplementedError
 
-    def _button(self, name, text, action):
+    def _button(self, name: str, text: str, action: Callable[..., object]) -> Widget:
         button = QtGui.QPushButton(text)
         button.setObjectName(name)
         button.clicked.connect(action)
         return button
 
-    def start(self):
+    def start(self) -> None:
         """Begins; what is missing is said in the panel."""
         try:
             self.runner = self.make_runner()
@@ -65,11 +74,11 @@ class RunPanel:
         self._arrange(True)
         self.progress(0.0)
 
-    def stop(self):
+    def stop(self) -> None:
         if self.runner:
             self.runner.cancel()
 
-    def progress(self, share):
+    def progress(self, share: float) -> None:
         seconds = time.monotonic() - self.runner.start
         text = self.doing().format(duration(seconds))
         left = self.left.update(seconds, share)
@@ -80,7 +89,7 @@ class RunPanel:
             self._say(text)
         self.status.update_progress(share, text)
 
-    def done(self, simulation, error):
+    def done(self, simulation: DocumentObject, error: BaseException | None) -> None:
         """It has ended."""
         self._remove_status()
         if self.runner.job() is None:
@@ -95,7 +104,7 @@ class RunPanel:
         else:
             self._tell(error)
 
-    def _tell(self, error):
+    def _tell(self, error: BaseException | None) -> None:
         """An error in the panel, and in full in the report view."""
         if not isinstance(error, InputError):
             lines = traceback.format_exception(type(error), error, error.__traceback__)
@@ -103,32 +112,32 @@ class RunPanel:
         FreeCAD.Console.PrintWarning(f"{error_text(error)}\n")
         self._say(error_text(error), True)
 
-    def _say(self, text, error=False):
+    def _say(self, text: str, error: bool = False) -> None:
         self.state.setText(text)
         style = warning_style(error)
         if style != self.state.styleSheet():
             self.state.setStyleSheet(style)
 
-    def _arrange(self, running):
+    def _arrange(self, running: bool) -> None:
         self.bar.setVisible(running)
         self.cancel.setVisible(running)
 
-    def _remove_status(self):
+    def _remove_status(self) -> None:
         if self.status:
             self.status.remove()
             self.status = None
 
-    def _gone(self, *_):
+    def _gone(self, *_: object) -> None:
         """The panel was taken away: what still goes on is cancelled, unheard."""
         self._remove_status()
         if self.runner:
             self.runner.abandon()
             self.runner = None
 
-    def getStandardButtons(self):
+    def getStandardButtons(self) -> Buttons:
         return buttons("Close")
 
-    def reject(self):
+    def reject(self) -> bool:
         """Close: what still goes on is cancelled."""
         if self.runner:
             self._remove_status()

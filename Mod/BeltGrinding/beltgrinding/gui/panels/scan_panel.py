@@ -1,20 +1,26 @@
 """Task panel of a scan: which file, where it starts, on which faces it is laid, and what comes out."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 from ...calibration import learning
 from ...engine import InputError
 from ...objects import deviation, ground_mesh, part_scan, preferences, simulation
 from ...objects.job_data import child, children
+from ...objects.kinds import DocumentObject
 from ...scan import comparison as scan, start as scan_start
 from ..common.compat import QtGui, translate
+from ..common.kinds import Context, Json, Layout, Widget
 from ..common.messages import error_text
 from ..common.runner import Background
 from .panel import Panel
 from ..widgets.steady import steady
 
-UNITS = (("mm", 1.0), ("m", 1000.0), ("cm", 10.0), ("in", 25.4))
+UNITS = (("mm", 1.0), ("m", 1000.0), ("cm", 10.0), ("in", 25.4), ("ft", 304.8), ("µm", 0.001))
 AS_IT_LIES, PRINCIPAL, MATRIX, PAIRS, ALIGNED = range(5)
 TABLE_HEIGHT = 230  # pixels: all rows
 
@@ -22,7 +28,7 @@ TABLE_HEIGHT = 230  # pixels: all rows
 class ScanPanel(Panel):
     """Compares on a button, in a thread; OK keeps what was compared last, Cancel takes it back."""
 
-    def __init__(self, job):
+    def __init__(self, job: DocumentObject) -> None:
         title = translate("BeltGrinding", "Compare a scan")
         super().__init__(child(job, simulation.Simulation), title, "BeltGrinding_Scan")
         self.job, self.work = job, None
@@ -77,7 +83,7 @@ class ScanPanel(Panel):
         self._enable()
         self._may_learn()
 
-    def _add_alignment(self, rows):
+    def _add_alignment(self, rows: Layout) -> None:
         """What of the start is kept, and how much of the scan decides."""
         held = QtGui.QWidget()
         held.setObjectName("held")
@@ -111,7 +117,7 @@ class ScanPanel(Panel):
         )
         rows.addRow(translate("BeltGrinding", "Pairs used"), self.share)
 
-    def _file(self, rows, text, name):
+    def _file(self, rows: Layout, text: str, name: str) -> Widget:
         box = QtGui.QWidget()
         line, button = QtGui.QLineEdit(), QtGui.QPushButton("...")
         line.setObjectName(name)
@@ -125,12 +131,12 @@ class ScanPanel(Panel):
         rows.addRow(text, box)
         return line
 
-    def _browse(self, line, title):
+    def _browse(self, line: Widget, title: str) -> None:
         path = QtGui.QFileDialog.getOpenFileName(self.form, title, line.text())[0]
         if path:
             line.setText(path)
 
-    def _choice(self, rows, text, choices):
+    def _choice(self, rows: Layout, text: str, choices: Sequence[str]) -> Widget:
         box = steady(QtGui.QComboBox())
         # A long choice must not make the panel wider than the view that holds it.
         box.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
@@ -139,12 +145,12 @@ class ScanPanel(Panel):
         rows.addRow(text, box)
         return box
 
-    def _enable(self, _=None):
+    def _enable(self, _: object = None) -> None:
         self.start_file.parentWidget().setEnabled(self.start.currentIndex() in (MATRIX, PAIRS))
         for widget in (self.datum, self.share, *self.held.values()):
             widget.setEnabled(self.start.currentIndex() != ALIGNED)
 
-    def options(self):
+    def options(self) -> dict[str, Any]:
         """What ``scan.compare`` takes, from the fields. Raises InputError."""
         start, file = self.start.currentIndex(), self.start_file.text().strip()
         if start in (MATRIX, PAIRS) and not file:
@@ -162,7 +168,7 @@ class ScanPanel(Panel):
         options["share"] = self.share.value() / 100.0
         return options
 
-    def compare(self):
+    def compare(self) -> None:
         """Begins; ``_done`` follows."""
         path = self.file.text().strip()
         try:
@@ -176,12 +182,12 @@ class ScanPanel(Panel):
         self._busy(translate("BeltGrinding", "Aligning and measuring..."))
         work = SimpleNamespace(result=result)
 
-        def run(context):
+        def run(context: Context) -> tuple[Any, Any]:
             return work.result, scan.compare(work.result, path, context=context, **options)
 
         self.work = Background(run, self._done)
 
-    def _done(self, found, error):
+    def _done(self, found: Any, error: BaseException | None) -> None:
         self._free()
         if error is not None:
             self.tell(error_text(error), True)
@@ -201,7 +207,7 @@ class ScanPanel(Panel):
         self.tell(told, bool(told))
         self._may_learn()
 
-    def learn(self):
+    def learn(self) -> None:
         """Begins; ``_learned`` follows."""
         try:
             data, measured = part_scan.to_learn(self.obj, self.job)
@@ -213,7 +219,7 @@ class ScanPanel(Panel):
             lambda context: learning.learn(data, measured, context=context), self._learned
         )
 
-    def _learned(self, found, error):
+    def _learned(self, found: Any, error: BaseException | None) -> None:
         self._free()
         if error is not None:
             self.tell(error_text(error), True)
@@ -240,24 +246,24 @@ class ScanPanel(Panel):
         )
         self.tell("\n".join(lines))
 
-    def _may_learn(self):
+    def _may_learn(self) -> None:
         there = bool(getattr(self.obj, "ScanFigures", "")) and not self.obj.OutOfDate
         self.correct.setEnabled(there)
 
-    def _busy(self, text):
+    def _busy(self, text: str) -> None:
         for button in (self.button, self.correct):
             button.setEnabled(False)
         self.tell(text)
 
-    def _free(self):
+    def _free(self) -> None:
         self.work = None
         self.button.setEnabled(True)
         self._may_learn()
 
-    def show(self, figures):
+    def show(self, figures: Json) -> None:
         """The figures of a comparison."""
 
-        def mm(value, sign="+"):
+        def mm(value: float, sign: str = "+") -> str:
             return preferences.length_text(value, 1, sign)
 
         alignment, difference = figures["alignment"], figures["difference_mm"]
@@ -291,11 +297,11 @@ class ScanPanel(Panel):
         self.table.resizeColumnsToContents()
         self.table.resizeRowsToContents()
 
-    def check(self):
+    def check(self) -> None:
         if self.work is not None:
             raise InputError("gui.comparison_runs", "The comparison is still running.")
 
-    def close(self):
+    def close(self) -> None:
         if self.work is not None:
             self.work.abandon()
             self.work = None

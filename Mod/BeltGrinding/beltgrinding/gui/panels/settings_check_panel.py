@@ -1,16 +1,25 @@
 """Task panel that tells whether a job's settings are fine enough: progress and Cancel, then the answer."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from ...objects import report_data
 from ...objects.job_data import child, inspection
+from ...objects.kinds import DocumentObject
 from ...objects.simulation import Simulation
 from ...reporting import convergence_section
 from ...simulation import convergence
 from ..common.compat import QtGui, translate
+from ..common.kinds import Context, Table
 from ..common.messages import note_texts
 from ..common.report_language import words
 from ..common.runner import Runner
 from ..common.theme import theme
 from .run_panel import RunPanel
+
+if TYPE_CHECKING:
+    from ...simulation.result import Result
 
 TABLE_HEIGHT = 320  # pixels
 
@@ -18,14 +27,14 @@ TABLE_HEIGHT = 320  # pixels
 class _Check(Runner):
     """A run at three levels in place of one."""
 
-    def grind(self, context):
+    def grind(self, context: Context) -> Result:
         return convergence.converge(self.data, context)
 
 
 class SettingsCheckPanel(RunPanel):
     """Shows what is known, and checks when asked to."""
 
-    def __init__(self, job):
+    def __init__(self, job: DocumentObject) -> None:
         title = translate("BeltGrinding", "Check settings")
         super().__init__(job, title, "BeltGrinding_CheckSettings")
         self.words = words()
@@ -56,7 +65,7 @@ class SettingsCheckPanel(RunPanel):
         body.addStretch()
         self.show(child(job, Simulation))
 
-    def _table(self):
+    def _table(self) -> Table:
         table = QtGui.QTableWidget(0, 2)
         table.setObjectName("figures")
         table.setHorizontalHeaderLabels(
@@ -71,13 +80,13 @@ class SettingsCheckPanel(RunPanel):
         table.setMinimumHeight(TABLE_HEIGHT)
         return table
 
-    def doing(self):
+    def doing(self) -> str:
         return translate("BeltGrinding", "Checking the settings, {}")
 
-    def make_runner(self):
+    def make_runner(self) -> Runner:
         return _Check(self.job, self.progress, self.done)
 
-    def show(self, simulation):
+    def show(self, simulation: DocumentObject) -> None:
         """The answer that the document has, if there is one."""
         found = report_data.convergence(simulation, inspection(self.job)) if simulation else None
         self.table.setRowCount(len(found["quantities"]) if found else 0)
@@ -104,11 +113,11 @@ class SettingsCheckPanel(RunPanel):
         self.table.resizeColumnToContents(1)
         self.table.resizeRowsToContents()
 
-    def _arrange(self, running):
+    def _arrange(self, running: bool) -> None:
         super()._arrange(running)
         self.check.setVisible(not running)
         self.table.setVisible(not running and self.table.rowCount() > 0)
 
-    def _say(self, text, error=False):
+    def _say(self, text: str, error: bool = False) -> None:
         super()._say(text, error)
         self.more.setText("")

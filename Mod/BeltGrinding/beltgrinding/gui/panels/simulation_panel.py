@@ -1,6 +1,9 @@
 """Task panel of the simulation: progress and Cancel, then figures and events."""
 
+from __future__ import annotations
+
 import json
+from collections.abc import Callable
 
 import FreeCAD
 import FreeCADGui as Gui
@@ -9,13 +12,16 @@ from ...engine import InputError, core
 from ...objects import api, job_data, report_data
 from ...objects.deviation import Deviation
 from ...objects.job_data import child
+from ...objects.kinds import DocumentObject, Event
 from ...objects.robot_path import RobotPath
 from ...objects.simulation import Simulation, is_coarse
 from ...objects.verdict import limits_changed
 from ..common.compat import QtCore, QtGui, translate
+from ..common.event_texts import errors
 from ..common.messages import error_text
 from ..common.report_language import language
 from ..common.runner import Runner
+from ..common.theme import warning_style
 from ..common.verdict_words import headline, shares
 from ..widgets.event_moment import EventMoment
 from ..widgets.event_table import EventTable
@@ -29,11 +35,11 @@ class _Follower:
     """Calls ``changed`` once FreeCAD is at rest after the limits of ``job`` or its Simulation have changed; an observer of the
     documents until ``end``."""
 
-    def __init__(self, job, changed):
+    def __init__(self, job: DocumentObject, changed: Callable[[], object]) -> None:
         self.job, self.changed, self.due = job, changed, False
         FreeCAD.addDocumentObserver(self)
 
-    def slotChangedObject(self, obj, name):
+    def slotChangedObject(self, obj: DocumentObject, name: str) -> None:
         if self.due or self.job is None:
             return
         try:
@@ -44,12 +50,12 @@ class _Follower:
             self.due = True
             QtCore.QTimer.singleShot(0, self._tell)
 
-    def _tell(self):
+    def _tell(self) -> None:
         self.due = False
         if self.job is not None:
             self.changed()
 
-    def end(self):
+    def end(self) -> None:
         if self.job is not None:
             self.job = None
             FreeCAD.removeDocumentObserver(self)
@@ -58,7 +64,7 @@ class _Follower:
 class SimulationPanel(RunPanel):
     """Runs a job if ``run``, and shows its result."""
 
-    def __init__(self, job, run):
+    def __init__(self, job: DocumentObject, run: bool) -> None:
         title = translate("BeltGrinding", "Simulation")
         super().__init__(job, title, "BeltGrinding_Simulate")
         body = QtGui.QVBoxLayout(self.form)
@@ -72,6 +78,13 @@ class SimulationPanel(RunPanel):
         for button in (self.cancel, self.again, self.look):
             row.addWidget(button)
         body.addLayout(row)
+        self.trouble = QtGui.QLabel()
+        self.trouble.setObjectName("trouble")
+        self.trouble.setWordWrap(True)
+        self.trouble.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
+        self.trouble.setStyleSheet(warning_style(True))
+        body.insertWidget(1, self.trouble)
+        self.trouble.hide()
         self.figures = QtGui.QLabel()
         self.figures.setWordWrap(True)
         self.figures.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
@@ -91,14 +104,14 @@ class SimulationPanel(RunPanel):
         else:
             self.show(child(job, Simulation))
 
-    def doing(self):
+    def doing(self) -> str:
         return translate("BeltGrinding", "Grinding, {}")
 
-    def make_runner(self):
+    def make_runner(self) -> Runner:
         self.moment.forget()
         return Runner(self.job, self.progress, self.done, core.Recording(), lay_deviation)
 
-    def show(self, simulation):
+    def show(self, simulation: DocumentObject) -> None:
         """Figures and events of a result."""
         self._arrange(False)
         if simulation is None:
@@ -120,6 +133,9 @@ class SimulationPanel(RunPanel):
                 "BeltGrinding", "Coarse resolution: for searching, no verdict."
             )
         self._say(text, simulation.OutOfDate)
+        trouble = errors(simulation)
+        self.trouble.setText(trouble)
+        self.trouble.setVisible(bool(trouble))
         self.figures.setText(
             translate(
                 "BeltGrinding",
@@ -147,7 +163,7 @@ class SimulationPanel(RunPanel):
             self.table.show_events(events)
             self.shown = events
 
-    def follow(self):
+    def follow(self) -> None:
         """The limits or the result have changed while the panel is open."""
         if self.runner is not None:
             return
@@ -156,31 +172,32 @@ class SimulationPanel(RunPanel):
         except (ReferenceError, RuntimeError):
             self.follower.end()  # the job is gone
 
-    def show_moment(self, event):
+    def show_moment(self, event: Event) -> None:
         """Shows a chosen event in the 3D view."""
         try:
             self.moment.show(event)
         except InputError as error:  # the job has changed since
             self._say(error_text(error), True)
 
-    def deviation(self):
+    def deviation(self) -> None:
         self.follower.end()
         self.moment.close()
         Gui.Control.closeDialog()
         Gui.runCommand("BeltGrinding_Deviation")
 
-    def _arrange(self, running):
+    def _arrange(self, running: bool) -> None:
         super()._arrange(running)
         self.again.setVisible(not running)
+        self.trouble.setVisible(False)
         self.look.setVisible(not running and child(self.job, Simulation) is not None)
 
-    def reject(self):
+    def reject(self) -> bool:
         self.follower.end()
         self.moment.close()
         return super().reject()
 
 
-def lay_deviation(job):
+def lay_deviation(job: DocumentObject) -> None:
     """Shows a job's result in colour over its part; in the undo step that stores it."""
     made = job_data.child(job, Deviation) is None
     deviation = api.make_deviation(job)
@@ -192,7 +209,7 @@ def lay_deviation(job):
             path.ViewObject.Visibility = False
 
 
-def show_result(simulation):
+def show_result(simulation: DocumentObject) -> None:
     """Opens the panel with the result of a Simulation object."""
     job = simulation.getParentGroup()
     if job is not None and not Gui.Control.activeDialog():

@@ -1,8 +1,13 @@
 """Task panel of the stock."""
 
+from __future__ import annotations
+
+from typing import Any
+
 from ...engine import InputError
 from ...objects import preferences, stock_scan
 from ...objects.geometry import placement_from_job
+from ...objects.kinds import DocumentObject
 from ...scan import start as scan_start
 from ..common.compat import QtGui, translate
 from ..common.messages import error_text
@@ -17,7 +22,7 @@ MESH_FILES = "*.stl *.ply *.obj *.off *.3mf"
 class StockPanel(Panel):
     """Edits a Stock."""
 
-    def __init__(self, obj):
+    def __init__(self, obj: DocumentObject) -> None:
         super().__init__(obj, translate("BeltGrinding", "Stock"), "BeltGrinding_Stock")
         form = self.fields = Form(obj, translate("BeltGrinding", "Stock on the design faces"))
         kinds = {
@@ -45,7 +50,7 @@ class StockPanel(Panel):
         form.add("SearchBelow", translate("BeltGrinding", "Search inward"))
         form.changed = self.arrange
         self.body.addWidget(form)
-        self.work = None
+        self.work: Background | None = None
         self.scan = QtGui.QWidget()
         rows = QtGui.QFormLayout(self.scan)
         rows.setContentsMargins(0, 0, 0, 0)
@@ -66,7 +71,7 @@ class StockPanel(Panel):
         self.finish()
         self.arrange()
 
-    def align(self):
+    def align(self) -> None:
         """Lays the file's mesh on the faces that are not ground; ``_laid`` follows."""
         try:
             job = self.obj.getParentGroup()
@@ -84,7 +89,7 @@ class StockPanel(Panel):
             lambda context: stock_scan.align(data, file, unit, context, **options), self._laid
         )
 
-    def _laid(self, found, error):
+    def _laid(self, found: Any, error: BaseException | None) -> None:
         self.work = None
         self.lay.setEnabled(True)
         if error is not None:
@@ -99,12 +104,12 @@ class StockPanel(Panel):
         warnings = [error_text(warning) for warning in figures["warnings"]]
         self.tell("\n".join([text, *warnings]), bool(warnings))
 
-    def close(self):
+    def close(self) -> None:
         if self.work is not None:
             self.work.abandon()
             self.work = None
 
-    def arrange(self):
+    def arrange(self) -> None:
         """Shows the fields that the kind uses."""
         self.scan.setVisible(
             self.obj.Kind == "mesh" and self.obj.Source is None and bool(self.obj.File)
@@ -120,7 +125,7 @@ class StockPanel(Panel):
         )
         self.tell("")
 
-    def check(self):
+    def check(self) -> None:
         obj = self.obj
         if obj.Kind == "solid" and not hasattr(obj.Source, "Shape"):
             raise InputError("gui.choose_solid", "Choose the solid that is the stock.")

@@ -1,12 +1,18 @@
 """Task panel of a study: what varies, which runs are made, progress while they run, and the way to the table."""
 
+from __future__ import annotations
+
 import json
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
 
 from ...engine import InputError
 from ...objects import job_data, study as studies, study_keys
+from ...objects.kinds import DocumentObject
 from ...objects.proxy import type_of
 from ...studies import names
 from ..common.compat import QtCore, QtGui, translate
+from ..common.kinds import Json, Widget
 from ..common.messages import error_text
 from ..common.report_language import words
 from ..common.study_runner import StudyRunner
@@ -18,13 +24,16 @@ from ..widgets.steady import steady
 from ..widgets.varied_rows import VariedRows
 from .run_panel import RunPanel
 
+if TYPE_CHECKING:
+    from ..common.runner import Runner
+
 MOST_RUNS, MOST_SEED, MOST_WORKERS = 1_000_000, 2**31 - 1, 4096
 
 
 class StudyPanel(RunPanel):
     """Settings go into the Study object as they are typed; the table and the answers are stored in it in the end."""
 
-    def __init__(self, obj, open_table):
+    def __init__(self, obj: DocumentObject, open_table: Callable[[DocumentObject], object]) -> None:
         """``open_table(obj)`` shows the table and the charts."""
         super().__init__(
             obj.getParentGroup(), translate("BeltGrinding", "Study"), "BeltGrinding_Study"
@@ -51,7 +60,7 @@ class StudyPanel(RunPanel):
         self._arrange(False)
         self.show(None)
 
-    def _varied(self):
+    def _varied(self) -> Widget:
         box = QtGui.QGroupBox(translate("BeltGrinding", "What varies"))
         layout = QtGui.QVBoxLayout(box)
         self.choices = {one.key: one for one in study_keys.choices(self.job)}
@@ -83,7 +92,7 @@ class StudyPanel(RunPanel):
         self.varied_box = box
         return box
 
-    def _correlated(self):
+    def _correlated(self) -> Fold:
         settings = self.obj.Proxy.settings(self.obj)
         self.entries = settings["vary"]  # of the last that could be
         names = [entry.get("name", entry["key"]) for entry in settings["vary"]]
@@ -99,10 +108,10 @@ class StudyPanel(RunPanel):
         )
         return self.correlated_fold
 
-    def _check_correlated(self, pairs):
+    def _check_correlated(self, pairs: Sequence[Json]) -> None:
         studies.check_correlated(pairs, self.entries, self.obj.Method)
 
-    def _design(self):
+    def _design(self) -> Form:
         box = Form(self.obj, translate("BeltGrinding", "Runs"))
         box.add(
             "Method",
@@ -124,7 +133,7 @@ class StudyPanel(RunPanel):
         self.design = box
         return box
 
-    def _best(self):
+    def _best(self) -> Fold:
         told = words()
         numbers = [name for name in names.NAMES if name != "overall"]
         for zone in job_data.zones(self.job):
@@ -140,7 +149,7 @@ class StudyPanel(RunPanel):
         self.best_fold = Fold("foldBest", title, self.best, self.best.summary, folded)
         return self.best_fold
 
-    def add(self):
+    def add(self) -> None:
         """Adds the chosen key, with a first range around its value."""
         key = self.keys.currentText().strip()
         one = self.choices.get(key) or study_keys.Choice(key, key, None, None)
@@ -158,10 +167,10 @@ class StudyPanel(RunPanel):
         self.varied.add(entry)
         self._changed()
 
-    def doing(self):
+    def doing(self) -> str:
         return translate("BeltGrinding", "Running, {}")
 
-    def start(self):
+    def start(self) -> None:
         self._commit()
         try:
             self._take()
@@ -173,11 +182,11 @@ class StudyPanel(RunPanel):
         self.document.recompute()
         super().start()
 
-    def make_runner(self):
+    def make_runner(self) -> Runner:
         self.design.check()
         return StudyRunner(self.obj, self.progress, self.done)
 
-    def progress(self, share):
+    def progress(self, share: float) -> None:
         super().progress(share)
         told = self.runner.told
         if told is None or not told.runs:
@@ -187,12 +196,12 @@ class StudyPanel(RunPanel):
             text += translate("BeltGrinding", ", {} failed").format(told.failed)
         self._say(f"{text}\n{self.state.text()}")
 
-    def done(self, found, error):
+    def done(self, found: Any, error: BaseException | None) -> None:
         super().done(found, error)
         if type_of(self.obj) == studies.Study.TYPE:
             self._open()
 
-    def show(self, found):
+    def show(self, found: Any) -> None:
         """Says what the document has. ``found``: the ``study.Found``, if it was made just now."""
         self._arrange(False)
         obj = self.obj
@@ -214,7 +223,7 @@ class StudyPanel(RunPanel):
         if found is not None:
             self.show_table()
 
-    def _tell_state(self):
+    def _tell_state(self) -> None:
         obj = self.obj
         if obj.OutOfDate:
             self._say(
@@ -235,10 +244,10 @@ class StudyPanel(RunPanel):
             lines.append(text.format(obj.Yield))
         self._say("\n".join(lines))
 
-    def show_table(self):
+    def show_table(self) -> None:
         self.open_table(self.obj)
 
-    def _changed(self):
+    def _changed(self) -> None:
         try:
             self._take()
         except InputError as error:
@@ -250,7 +259,7 @@ class StudyPanel(RunPanel):
         else:
             self.show(None)
 
-    def _take(self):
+    def _take(self) -> None:
         """What the panel holds into the object, all of it that is right. Raises InputError for the first that is not."""
         wrong = []
         for take in (self._take_varied, self._take_correlated, self._take_best):
@@ -261,17 +270,17 @@ class StudyPanel(RunPanel):
         if wrong:
             raise wrong[0]
 
-    def _take_varied(self):
+    def _take_varied(self) -> None:
         entries = self.varied.entries()
         varied = studies.check_varied(entries)
         self._put("Vary", entries)
         self.entries = entries
         self.correlated.set_names([one.name for one in varied])
 
-    def _take_correlated(self):
+    def _take_correlated(self) -> None:
         self._put("Correlations", self.correlated.values())
 
-    def _take_best(self):
+    def _take_best(self) -> None:
         asked = {
             k: v for k, v in self.obj.Proxy.settings(self.obj)["answers"].items() if k != "best"
         }
@@ -280,26 +289,26 @@ class StudyPanel(RunPanel):
             asked["best"] = best
         self._put("Asked", asked)
 
-    def _put(self, name, value):
+    def _put(self, name: str, value: Any) -> None:
         """Sets a property of JSON, if that is another value."""
-        held, text = getattr(self.obj, name), json.dumps(value) if value else ""
-        if (json.dumps(json.loads(held)) if held else "") != text:
+        held, text = getattr(self.obj, name), json.dumps(value, allow_nan=False) if value else ""
+        if (json.dumps(json.loads(held), allow_nan=False) if held else "") != text:
             setattr(self.obj, name, text)
 
-    def _open(self):
+    def _open(self) -> None:
         self.document.openTransaction(translate("BeltGrinding", "Settings of the study"))
 
-    def _commit(self):
+    def _commit(self) -> None:
         self.document.commitTransaction()
 
-    def _arrange(self, running):
+    def _arrange(self, running: bool) -> None:
         super()._arrange(running)
         self.begin.setVisible(not running)
         self.table.setVisible(not running and bool(self.obj.Fingerprint))
         for widget in (self.varied_box, self.correlated_fold, self.design, self.best_fold):
             widget.setEnabled(not running)
 
-    def reject(self):
+    def reject(self) -> bool:
         self._commit()
         self.document.recompute()
         return super().reject()

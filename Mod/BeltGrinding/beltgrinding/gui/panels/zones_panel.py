@@ -1,12 +1,19 @@
 """Task panel of a job's tolerance zones: a table, whose chosen zone's faces are tinted."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Sequence
+from typing import Any
 
 import FreeCADGui as Gui
 
 from ...engine import InputError
 from ...objects import job_data
+from ...objects.kinds import DocumentObject
+from ..common import gates
 from ..common.compat import QtCore, QtGui, translate
+from ..common.kinds import Json, Layout, Table, Widget
 from ..common.messages import error_text
 from ..scene.face_tint import FaceTint
 from ..widgets.rows import shown
@@ -29,7 +36,7 @@ TYPED = {"T": "⊥"}  # what a keyboard has in its place
 class ZonesPanel(Panel):
     """Edits the zones of a BeltGrindingJob."""
 
-    def __init__(self, obj):
+    def __init__(self, obj: DocumentObject) -> None:
         super().__init__(obj, translate("BeltGrinding", "Tolerance zones"), "BeltGrinding_Zones")
         text = translate(
             "BeltGrinding",
@@ -46,13 +53,14 @@ class ZonesPanel(Panel):
         self.fields = {}  # column: field of the chosen zone
         self.body.addWidget(self._chosen())
         self.finish()
-        Gui.Selection.addSelectionGate(FaceGate())
+        self.gate = FaceGate()
+        gates.hold(self.gate)
         self.tint = FaceTint(self.document)
         self.quiet = False
         self.fill(job_data.zones(obj))
         self.changed()
 
-    def _table(self):
+    def _table(self) -> Table:
         table = QtGui.QTableWidget(0, COLUMNS)
         table.setObjectName("zones")
         titles = [
@@ -98,7 +106,7 @@ class ZonesPanel(Panel):
         table.currentCellChanged.connect(lambda *_: self._chose())
         return table
 
-    def _chosen(self):
+    def _chosen(self) -> Widget:
         """Fields for what of the chosen zone the table has no room for."""
         self.box = QtGui.QGroupBox(translate("BeltGrinding", "Chosen zone"))
         form = QtGui.QFormLayout(self.box)
@@ -116,12 +124,12 @@ class ZonesPanel(Panel):
             self.fields[column] = field
         return self.box
 
-    def _typed(self, column, text):
+    def _typed(self, column: int, text: str) -> None:
         item = self.table.item(self.table.currentRow(), column)
         if item is not None:
             item.setText(text)
 
-    def _show_chosen(self):
+    def _show_chosen(self) -> None:
         row = self.table.currentRow()
         self.box.setEnabled(row >= 0)
         for column, field in self.fields.items():
@@ -130,12 +138,12 @@ class ZonesPanel(Panel):
             if field.text() != text:
                 field.setText(text)
 
-    def _chose(self):
+    def _chose(self) -> None:
         if not self.quiet:
             self._show_chosen()
             self.tint_row()
 
-    def _buttons(self):
+    def _buttons(self) -> Layout:
         grid = QtGui.QGridLayout()
         for k, (name, text, action) in enumerate(
             (
@@ -154,7 +162,7 @@ class ZonesPanel(Panel):
 
     # Between the table and the job's zones
 
-    def fill(self, zones, row=0):
+    def fill(self, zones: Sequence[Json], row: int = 0) -> None:
         """Puts zones into the table."""
         self.quiet = True
         self.table.setRowCount(len(zones))
@@ -180,11 +188,11 @@ class ZonesPanel(Panel):
             self.table.setCurrentCell(min(row, len(zones) - 1), NAME)
         self.quiet = False
 
-    def text(self, row, column):
+    def text(self, row: int, column: int) -> str:
         item = self.table.item(row, column)
         return item.text().strip() if item is not None else ""
 
-    def zone(self, row):
+    def zone(self, row: int) -> dict[str, Any]:
         """The zone in a row. Raises InputError naming the cell."""
         zone = {"name": self.text(row, NAME), "faces": self._faces(row)}
         if not zone["name"]:
@@ -204,7 +212,7 @@ class ZonesPanel(Panel):
         finish = self._finish(row)
         return {**zone, "finish": finish} if finish else zone
 
-    def _finish(self, row):
+    def _finish(self, row: int) -> dict[str, Any]:
         """A zone's ``finish``; {} where the drawing calls for none."""
         found, words = {}, self.text(row, RA).split()
         if words:
@@ -239,7 +247,7 @@ class ZonesPanel(Panel):
             found["lay_tolerance_deg"] = float(tolerance)
         return found
 
-    def _faces(self, row):
+    def _faces(self, row: int) -> list[int]:
         words = self.text(row, FACES).replace(",", " ").replace("Face", " ").split()
         if not all(word.isdigit() for word in words):
             raise InputError(
@@ -249,7 +257,7 @@ class ZonesPanel(Panel):
             )
         return list(dict.fromkeys(int(word) for word in words))
 
-    def _number(self, row, column, text=None):
+    def _number(self, row: int, column: int, text: str | None = None) -> float:
         text = (self.text(row, column) if text is None else text).replace(",", ".")
         try:
             value = float(text[:-2] if text.endswith("mm") else text)
@@ -271,12 +279,12 @@ class ZonesPanel(Panel):
             text=text,
         )
 
-    def zones(self):
+    def zones(self) -> list[dict[str, Any]]:
         return [self.zone(row) for row in range(self.table.rowCount())]
 
     # What is changed
 
-    def changed(self):
+    def changed(self) -> None:
         """Takes the table over into the job, if it is sound; says what is wrong otherwise."""
         if self.quiet:
             return
@@ -296,10 +304,10 @@ class ZonesPanel(Panel):
             )
         self.tint_row()
 
-    def check(self):
+    def check(self) -> None:
         job_data.set_zones(self.obj, self.zones())
 
-    def add(self):
+    def add(self) -> None:
         names = {self.text(row, NAME) for row in range(self.table.rowCount())}
         number = len(names) + 1
         base = translate("BeltGrinding", "Zone")
@@ -311,20 +319,20 @@ class ZonesPanel(Panel):
         rows.append([f"{base} {number}", " ".join(map(str, faces)), *(f"{v:g}" for v in limits)])
         self._set_rows(rows, len(rows) - 1)
 
-    def remove(self):
+    def remove(self) -> None:
         row = self.table.currentRow()
         rows = self._rows()
         if 0 <= row < len(rows):
             del rows[row]
             self._set_rows(rows, row)
 
-    def move(self, step):
+    def move(self, step: int) -> None:
         row, rows = self.table.currentRow(), self._rows()
         if 0 <= row < len(rows) and 0 <= row + step < len(rows):
             rows[row], rows[row + step] = rows[row + step], rows[row]
             self._set_rows(rows, row + step)
 
-    def take(self):
+    def take(self) -> None:
         """Gives the chosen zone the faces that are selected in the 3D view."""
         row, faces = self.table.currentRow(), self._selected()
         if row < 0:
@@ -333,7 +341,7 @@ class ZonesPanel(Panel):
             return self.tell(translate("BeltGrinding", "Select faces in the 3D view first."), True)
         self.table.item(row, FACES).setText(" ".join(map(str, faces)))
 
-    def _rows(self):
+    def _rows(self) -> list[list[Any]]:
         # Last of each what no cell shows.
         return [
             [
@@ -343,7 +351,7 @@ class ZonesPanel(Panel):
             for row in range(self.table.rowCount())
         ]
 
-    def _set_rows(self, rows, current):
+    def _set_rows(self, rows: Sequence[Sequence[Any]], current: int) -> None:
         """Puts texts back as they are, sound or not."""
         self.fill([{"name": texts[NAME]} for texts in rows], current)
         self.quiet = True
@@ -355,7 +363,7 @@ class ZonesPanel(Panel):
         self.quiet = False
         self.changed()
 
-    def _selected(self):
+    def _selected(self) -> list[int]:
         """Numbers of the job's faces that are selected in the 3D view."""
         found = []
         for one in Gui.Selection.getSelectionEx(self.document.Name):
@@ -364,7 +372,7 @@ class ZonesPanel(Panel):
                 found += job_data.face_numbers(self.obj, one.Object, subs)
         return sorted(set(found))
 
-    def tint_row(self):
+    def tint_row(self) -> None:
         """Tints the faces of the chosen zone."""
         if self.quiet:
             return
@@ -378,19 +386,19 @@ class ZonesPanel(Panel):
             faces = ground
         self.tint.show([shape.Faces[f - 1] for f in faces if 1 <= f <= len(shape.Faces)])
 
-    def close(self):
-        Gui.Selection.removeSelectionGate()
+    def close(self) -> None:
+        gates.release(self.gate)
         self.tint.close()
 
 
-def _ra_text(finish):
+def _ra_text(finish: Json) -> str:
     """What stands for a zone's limit of the roughness."""
     accepted = finish.get("acceptance", ACCEPTANCES[0])
     words = [shown(finish["Ra_max_um"])] if "Ra_max_um" in finish else []
     return " ".join(words + [accepted] * (accepted != ACCEPTANCES[0]))
 
 
-def _lay_text(finish):
+def _lay_text(finish: Json) -> str:
     """What stands for a zone's lay."""
     symbol = finish.get("lay", "")
     numbers = finish.get(LAYS.get(symbol), [])

@@ -3,16 +3,23 @@
 All are in the contact frame: its origin lies on the belt's outer face, x along the travel, z into the work.
 """
 
+from __future__ import annotations
+
 import math
+from collections.abc import Sequence
+from types import ModuleType
+from typing import Any
 
 import numpy as np
 
-from ...base.solids import strip
 from ...engine import InputError
-from ...job import fork, free_run, pressed_belt
-from ...job.bodies import PLATE, ROLLERS
+from ...geometry import fork, free_run, pressed_belt
+from ...geometry.body_names import PLATE, ROLLERS
+from ...geometry.solids import strip
 from ...objects.belt_machine import KEYS, KIND_KEYS, LAYERS, PLATEN, check_run, layers_of
+from ...objects.kinds import DocumentObject
 from ...objects.properties import to_job
+from ..common.kinds import Array, Json, Node, Surface
 from .shapes3d import BELT, CORE, RUBBER, axes, material, revolved, separator, triangles
 
 TURN = 24  # chords of the belt round a roller
@@ -22,7 +29,7 @@ LEAST = 0.004  # of the free length: a belt that is thinner is drawn so thick
 AXES = 0.15  # of the free length
 
 
-def parts(machine):
+def parts(machine: DocumentObject) -> dict[str, Node]:
     """{name of the body in events, or '' for what is none: node} of a free belt or platen in the document; the belt as it
     touches nothing."""
     job = as_job(machine)
@@ -39,13 +46,13 @@ def parts(machine):
     return found
 
 
-def fork_parts(machine):
+def fork_parts(machine: DocumentObject) -> dict[str, Node]:
     """{name of the body in events: node} of what holds a small wheel in the document: the belt's runs, the arms."""
     job = as_job(machine)
     return _runs_and_arms(fork, job) if fork.holds(job) else {}
 
 
-def _runs_and_arms(holder, job):
+def _runs_and_arms(holder: ModuleType, job: Json) -> dict[str, Node]:
     found = {}
     for name, side in zip(holder.NAMES, (-1.0, 1.0)):
         found[name] = separator(material(BELT), triangles(*holder.run(job, side), crease=0.0))
@@ -55,7 +62,7 @@ def _runs_and_arms(holder, job):
     return found
 
 
-def as_job(machine):
+def as_job(machine: DocumentObject) -> dict[str, Any]:
     """A job's ``belt_machine`` of one in the document; layers that were written by hand and are none are left out, and so
     is a radius that a platen cannot have."""
     keys = (key for key in KIND_KEYS[machine.Kind] if key is not LAYERS)
@@ -71,7 +78,7 @@ def as_job(machine):
     return job
 
 
-def press(node, job, points, triangles, was_pressed):
+def press(node: Node, job: Json, points: Array, triangles: Array, was_pressed: bool) -> bool:
     """Draws the belt in the node of '' of ``parts`` as a part presses it, a mesh with its points (n, 3) in the contact frame;
     whether that reaches through it. ``was_pressed``: what this said the last time."""
     section = pressed_belt.slab(points, triangles, 0.5 * job["free_run"]["width_mm"])
@@ -83,7 +90,7 @@ def press(node, job, points, triangles, was_pressed):
     return pushed is not None
 
 
-def roller(job, axis):
+def roller(job: Json, axis: Sequence[float]) -> Surface:
     """(points, triangles) of a roller whose axis lies at [x, z]. ``job``: a job's belt_machine."""
     run = job["free_run"]
     radius, half = run["roller_radius_mm"], 0.5 * run["width_mm"]
@@ -92,20 +99,20 @@ def roller(job, axis):
     return points + [axis[0], 0.0, axis[1]], faces
 
 
-def belt_node(job, pushed=None):
+def belt_node(job: Json, pushed: tuple[Array, Array] | None = None) -> Node:
     """``pushed``: as of ``belt``."""
     node = separator(material(BELT), triangles(*belt(job, pushed), crease=0.8))
     node.setName(BELT_NODE)
     return node
 
 
-def outline(job):
+def outline(job: Json) -> Array:
     """Points [x, z] (n, 2) of the belt's outer face, as ``belt`` has it; where it goes round, the first once more."""
     line = _round_rollers(job, free_run.line(job, free_run.face(job)), 0.0)
     return np.concatenate([line, line[:1]]) if _closed(job) else line
 
 
-def belt(job, pushed=None):
+def belt(job: Json, pushed: tuple[Array, Array] | None = None) -> Surface:
     """(points, triangles) of the belt from roller to roller and round them, back from one to the other unless its runs are
     drawn apart. ``pushed``: (x, mm) by which its face is pressed in from where it touches nothing.
     """
@@ -123,20 +130,20 @@ def belt(job, pushed=None):
     return (band if _closed(job) else _between)(*lines, 0.5 * run["width_mm"])
 
 
-def _between(inside, outside, half):
+def _between(inside: Array, outside: Array, half: float) -> Surface:
     return strip(outside, inside, half)
 
 
-def _closed(job):
+def _closed(job: Json) -> bool:
     """The belt goes on from one roller to the other behind them."""
     return job["free_run"]["roller_radius_mm"] > 0.0 and not _runs(job)
 
 
-def _runs(job):
+def _runs(job: Json) -> bool:
     return free_run.has_runs(job) and free_run.short_frame(job) is None
 
 
-def _round_rollers(job, face, below):
+def _round_rollers(job: Json, face: Array, below: float) -> Array:
     """Points [x, z] (n, 2) of a line of the belt that goes on round the rollers, ``below`` mm under its outer face."""
     run = job["free_run"]
     if run["roller_radius_mm"] <= 0.0:
@@ -155,7 +162,7 @@ def _round_rollers(job, face, below):
     return np.concatenate([left[:0:-1], face, right[1:]])
 
 
-def band(inside, outside, half):
+def band(inside: Array, outside: Array, half: float) -> Surface:
     """(points, triangles) between two lines [x, z] (n, 2) that go round together, from the last point back to the first,
     ``half`` wide to both sides of y = 0."""
     rings = [

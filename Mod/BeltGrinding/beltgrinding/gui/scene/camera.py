@@ -1,19 +1,24 @@
 """The 3D view's camera."""
 
+from __future__ import annotations
+
 import math
+from typing import Any
 
 import FreeCAD
 import FreeCADGui as Gui
 from pivy import coin
 
+from ...objects.kinds import Point, Vector
 from ..common.compat import QtCore
+from ..common.kinds import View3D
 
 FLIGHT = 400  # ms
 STEP = 25  # ms
-_flights = []  # the one timer, once it is made
+_flights: list[Any] = []  # the one timer, once it is made
 
 
-def look_at(normal):
+def look_at(normal: Vector) -> None:
     """Turns the view to look against ``normal`` (FreeCAD.Vector, document's frame), upright where it
     can, and fits everything into it.
     """
@@ -26,7 +31,7 @@ def look_at(normal):
     view.setAnimationEnabled(animated)
 
 
-def _upright(normal, upright=FreeCAD.Vector(0, 0, 1)):
+def _upright(normal: Vector, upright: Vector = FreeCAD.Vector(0, 0, 1)) -> Any:
     """Orientation (FreeCAD.Rotation) of a camera that looks against ``normal``, upright where it can."""
     if normal.getAngle(upright) < 0.05 or normal.getAngle(-upright) < 0.05:
         upright = FreeCAD.Vector(upright.y, upright.z, upright.x)
@@ -34,7 +39,7 @@ def _upright(normal, upright=FreeCAD.Vector(0, 0, 1)):
     return FreeCAD.Rotation(side, upright, normal, "ZXY")
 
 
-def fly_to(view, point, normal, size, up=(0, 0, 1)):
+def fly_to(view: View3D, point: Point, normal: Point, size: float, up: Point = (0, 0, 1)) -> None:
     """Moves a 3D view's camera to look against ``normal`` at ``point`` (both three numbers, document's
     frame), with ``size`` mm in its height and ``up`` upwards; at once where the view's animation is off.
     """
@@ -57,7 +62,7 @@ def fly_to(view, point, normal, size, up=(0, 0, 1)):
         "height": end["height"] if perspective else camera.height.getValue(),
     }
 
-    def put(share):
+    def put(share: float) -> None:
         camera.position = tuple(start["position"] * (1.0 - share) + end["position"] * share)
         camera.orientation = tuple(start["turn"].slerp(end["turn"], share).Q)
         for name in ("distance", "height"):
@@ -75,7 +80,7 @@ def fly_to(view, point, normal, size, up=(0, 0, 1)):
     timer, clock = QtCore.QTimer(Gui.getMainWindow()), QtCore.QElapsedTimer()
     clock.start()
 
-    def step():
+    def step() -> None:
         share = min(clock.elapsed() / FLIGHT, 1.0)
         try:
             put(share * share * (3.0 - 2.0 * share))

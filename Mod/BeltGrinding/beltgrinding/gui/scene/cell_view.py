@@ -4,13 +4,20 @@ All nodes are in the part's coordinates, which are the document's. While the cel
 moves, a transform before all that is drawn in the view carries the part through the cell.
 """
 
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from typing import Any
+
 import FreeCADGui as Gui
 import numpy as np
 from pivy import coin
 
 from ...base.frames import work_from_frames
-from ...job.bodies import WHEEL
+from ...geometry.body_names import WHEEL
 from ...objects import belt_machine, bodies
+from ...objects.kinds import Document, DocumentObject
+from ..common.kinds import Array, Node, Surface, View3D
 from . import belt_shapes
 from .part_context import mesh_of_part
 from .robot_view import RobotView
@@ -39,7 +46,7 @@ CELL = {
 class CellView:
     """Draws the cell of ``machine`` (None: only the tool frame) at the poses of a path."""
 
-    def __init__(self, document, machine):
+    def __init__(self, document: Document, machine: DocumentObject | None) -> None:
         self.machine = machine
         self.poses = np.zeros((0, 4, 4))
         self.pose, self.moving = 0, False
@@ -66,33 +73,33 @@ class CellView:
             scene.addChild(self.root)
         self.rebuild()
 
-    def close(self):
+    def close(self) -> None:
         for scene in self.scenes:
             for node in (self.carrier, self.root):
                 if scene.findChild(node) >= 0:
                     scene.removeChild(node)
         self.scenes = []
 
-    def set_path(self, poses):
+    def set_path(self, poses: Array) -> None:
         """base_from_tcp (n, 4, 4) in mm of the path that is walked."""
         self.poses, self.pose, self.frame = np.asarray(poses, dtype=float), 0, None
         self.update()
 
-    def set_pose(self, index):
+    def set_pose(self, index: int) -> None:
         self.pose, self.frame = index, None
         self.update()
 
-    def set_frame(self, base_from_tcp):
+    def set_frame(self, base_from_tcp: Array) -> None:
         """Shows the tool at a frame (4, 4) in mm that need not be a pose's."""
         self.frame = base_from_tcp
         self.update()
 
-    def set_moving(self, moving):
+    def set_moving(self, moving: bool) -> None:
         """True: the part moves where the robot holds it; False: it stays, the wheel moves."""
         self.moving = moving
         self.update()
 
-    def rebuild(self):
+    def rebuild(self) -> None:
         """Draws wheel and bodies anew, after the machine was changed."""
         for things in self.things.values():
             things.removeAllChildren()
@@ -112,7 +119,7 @@ class CellView:
         self.things["tool"].addChild(axes(0.3 * size))
         self.update()
 
-    def _pressing(self):
+    def _pressing(self) -> dict[str, Node]:
         """{name as events have it: node} of what presses on the part."""
         if self.machine.Kind in belt_machine.WHEELS:
             more = (
@@ -123,7 +130,7 @@ class CellView:
             return {WHEEL: wheel(self.machine), **more}
         return belt_shapes.parts(self.machine)
 
-    def _take_part(self):
+    def _take_part(self) -> None:
         """What presses on a belt, where that is no wheel."""
         self.belt, self.part, self.pressed = None, None, False
         job = self.machine.getParentGroup()
@@ -131,7 +138,7 @@ class CellView:
             return
         self.belt, self.part = belt_shapes.as_job(self.machine), mesh_of_part(job)
 
-    def _press(self, contact):
+    def _press(self, contact: Array) -> None:
         """Draws the belt as the part presses it at the pose."""
         if self.part is None or not len(self.part[1]):
             return
@@ -141,7 +148,7 @@ class CellView:
             self.bodies[""], self.belt, points, triangles, self.pressed
         )
 
-    def tint(self, names):
+    def tint(self, names: Collection[str]) -> None:
         """Draws the bodies of these names, as events have them, in a warning colour; the others in
         their own."""
         self.tinted = tuple(names)
@@ -152,12 +159,12 @@ class CellView:
                 colour.setOverride(True)
             _put_first(node, TINT, colour)
 
-    def fade(self, names):
+    def fade(self, names: Collection[str]) -> None:
         """Draws the bodies of these names see-through; the others as they are."""
         for name, node in self.bodies.items():
             _put_first(node, FADE, faint() if name in names else None)
 
-    def solids(self):
+    def solids(self) -> dict[str, Surface]:
         """{name as events have it: (points (n, 3) mm, triangles (m, 3))} of bodies and robot at the pose,
         in the part's coordinates."""
         if self.machine is None:
@@ -173,17 +180,17 @@ class CellView:
                 found[name] = np.array(points), np.array(faces)
         return found
 
-    def cell(self):
+    def cell(self) -> dict[str, Any]:
         return CELL if self.machine is None else self.machine.Proxy.cell(self.machine)
 
-    def frames(self):
+    def frames(self) -> dict[str, Array]:
         """{frame: work_from_frame} at the pose."""
         return work_from_frames(self.base_from_tcp(), **self.cell())
 
-    def base_from_tcp(self):
+    def base_from_tcp(self) -> Array:
         return self.poses[self.pose] if self.frame is None else self.frame
 
-    def update(self):
+    def update(self) -> None:
         """Puts everything where it is at the pose."""
         if not len(self.poses):
             return
@@ -194,14 +201,14 @@ class CellView:
         self._press(frames["contact"])
         self.robot.place(frames["base"], self.base_from_tcp(), self.pose)
 
-    def carried(self, frames):
+    def carried(self, frames: Mapping[str, Array]) -> Array:
         """How the part has moved in the cell since the first pose; it lies as drawn there."""
         if not self.moving:
             return np.eye(4)
         start = work_from_frames(self.poses[0], **self.cell())["base"]
         return start @ np.linalg.inv(frames["base"])
 
-    def nearest(self, view, position, reach):
+    def nearest(self, view: View3D, position: Sequence[float], reach: float) -> int | None:
         """Index of the pose whose contact point is drawn within ``reach`` pixels of ``position``
         (x, y from the lower left), None if there is none."""
         points = work_from_frames(self.poses, **self.cell())["contact"][:, :3, 3]
@@ -215,7 +222,7 @@ class CellView:
         )
 
 
-def _put_first(group, name, node):
+def _put_first(group: Node, name: str, node: Node | None) -> None:
     """Puts a node of this name before a group's others, in place of one of that name; None: none."""
     for k in reversed(range(group.getNumChildren())):
         if group.getChild(k).getName() == name:
@@ -225,7 +232,7 @@ def _put_first(group, name, node):
         group.insertChild(node, 0)
 
 
-def project(view, points):
+def project(view: View3D, points: Array) -> tuple[Array, Array]:
     """(pixels (n, 2) from the lower left, depth (n,)) of homogeneous points (n, 4)."""
     width, height = view.getSize()
     volume = view.getCameraNode().getViewVolume(width / height)

@@ -1,5 +1,7 @@
 """The deviation's colours with crisp borders, drawn in place of FreeCAD's mesh, which has a colour a vertex."""
 
+from __future__ import annotations
+
 import json
 
 import numpy as np
@@ -19,6 +21,8 @@ from ...objects.deviation import (
     temperature_span,
 )
 from ...objects.fields import field_of
+from ...objects.kinds import DocumentObject, ViewObject
+from ..common.kinds import Node
 from . import field_view
 from .field_view import FieldView
 from .shapes3d import unpickable
@@ -30,14 +34,14 @@ class CrispColours:
     """Nodes to be put before those of a Deviation's mesh. The mesh stays, is picked, and is saved with its
     colours; it is only not drawn where this can."""
 
-    def __init__(self, root):
+    def __init__(self, root: Node) -> None:
         self.field = self.shape = None
         self.switch, self.mesh_style = coin.SoSwitch(), coin.SoDrawStyle()
         self.mesh_style.style = coin.SoDrawStyle.FILLED
         root.insertChild(self.mesh_style, 0)
         root.insertChild(self.switch, 0)
 
-    def update(self, view):
+    def update(self, view: ViewObject) -> None:
         """Draws the object of a view provider as it is now."""
         if not _drawable(view) or not self._load(view.Object):
             return self.hide()
@@ -46,11 +50,11 @@ class CrispColours:
         self.mesh_style.style = coin.SoDrawStyle.INVISIBLE
         self.mesh_style.setOverride(True)
 
-    def shown(self):
+    def shown(self) -> bool:
         """Whether the colours are drawn here, and not by FreeCAD."""
         return self.shape is not None
 
-    def hide(self):
+    def hide(self) -> None:
         """Leaves the drawing to FreeCAD."""
         self.field = self.shape = None
         self.switch.whichChild = coin.SO_SWITCH_NONE
@@ -58,7 +62,7 @@ class CrispColours:
         self.mesh_style.setOverride(False)
         self.mesh_style.style = coin.SoDrawStyle.FILLED
 
-    def _load(self, obj):
+    def _load(self, obj: DocumentObject) -> bool:
         """Takes the object's field, if another one is drawn: a result gets a new one when a scan is compared
         with it. False where there is none."""
         field = field_of(obj.Simulation)
@@ -74,7 +78,7 @@ class CrispColours:
         self.switch.addChild(drawn)
         return True
 
-    def _colour(self, obj):
+    def _colour(self, obj: DocumentObject) -> None:
         field = self.field
         scale = (obj.ToleranceLower.Value, obj.ToleranceUpper.Value, obj.ColourLimit.Value)
         if obj.ColourBy == UNCERTAINTY and len(field.height_sd):
@@ -92,7 +96,7 @@ class CrispColours:
             self.shape.colour_by(field_view.DEVIATION, *scale, bands_of(obj), preferences.colours())
 
 
-def _drawable(view):
+def _drawable(view: ViewObject) -> bool:
     """Whether a view provider's object can be drawn here; where not, FreeCAD draws it."""
     obj = view.Object
     simulation = getattr(obj, "Simulation", None)

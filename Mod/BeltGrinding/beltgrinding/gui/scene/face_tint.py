@@ -1,9 +1,14 @@
 """A tint on the faces that a panel is about, in the 3D views; the document is left as it is."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable
+
 import FreeCADGui as Gui
 import Part
 from pivy import coin
 
+from ...objects.kinds import Document, DocumentObject
 from .shapes3d import material, separator, triangles, unpickable
 
 TINT = (0.1, 0.6, 0.55)
@@ -14,7 +19,7 @@ DEFLECTION = 0.002  # chord error, as a share of the faces' diagonal
 class FaceTint:
     """Draws over faces in a document's views until it is closed."""
 
-    def __init__(self, document):
+    def __init__(self, document: Document) -> None:
         self.faces = coin.SoGroup()
         # Nearer to the eye than the part's own triangles, which lie in the same place.
         offset = coin.SoPolygonOffset()
@@ -27,7 +32,7 @@ class FaceTint:
         for scene in self.scenes:
             scene.addChild(self.root)
 
-    def show(self, faces):
+    def show(self, faces: Iterable[tuple[DocumentObject, str]]) -> None:
         """Tints these Part faces (in the document's coordinates), and no others."""
         self.faces.removeAllChildren()
         if not faces:
@@ -37,7 +42,7 @@ class FaceTint:
         if found:
             self.faces.addChild(triangles([tuple(point) for point in points], found))
 
-    def close(self):
+    def close(self) -> None:
         """Takes the tint away."""
         for scene in self.scenes:
             if scene.findChild(self.root) >= 0:

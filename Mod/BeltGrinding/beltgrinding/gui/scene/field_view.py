@@ -5,12 +5,18 @@ Drawn by our own Coin node, SoHeightField (module ``beltgrinding_coin``), where 
 with pivy and FreeCAD; else by Coin's stock nodes, which do the same more slowly.
 """
 
+from __future__ import annotations
+
 import os
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from pivy import coin
 
 from ...engine import InputError, core, library
+from ...objects.kinds import Field
+from ..common.kinds import Array, Node, View3D
 
 STOCK_NODES = "BELTGRINDING_STOCK_NODES"  # environment: set, to do without SoHeightField
 PICK_RADIUS = 1.0  # pixels
@@ -22,7 +28,7 @@ PALETTE = 2048  # colours from one end of a scale to the other
 MODES = (DEVIATION, REMOVED, UNCERTAINTY, FACE, PRESSURE, CONTACT, TEMPERATURE, ROUGHNESS)
 
 
-def _coin_module():
+def _coin_module() -> Any:
     """``beltgrinding_coin``, its node known to pivy's Coin; None where that is another Coin."""
     if os.environ.get(STOCK_NODES):
         return None
@@ -36,7 +42,7 @@ def _coin_module():
     return module
 
 
-def has_own_node():
+def has_own_node() -> bool:
     """Whether SoHeightField can be used in this program."""
     return _coin_module() is not None
 
@@ -44,27 +50,29 @@ def has_own_node():
 class _OwnNode:
     """Draws with SoHeightField."""
 
-    def __init__(self, module, field):
+    def __init__(self, module: Any, field: Field) -> None:
         self.module = module
         self.shape = coin.SoType.fromName("SoHeightField").createInstance()
         self.address = int(self.shape.this)
         self.parts = (self.shape,)
         module.set_samples(self.address, field.points, field.rays, field.triangles)
 
-    def set_heights(self, heights):
+    def set_heights(self, heights: Array) -> None:
         self.module.set_heights(self.address, heights)
 
-    def set_colours(self, packed):
+    def set_colours(self, packed: Array) -> None:
         self.module.set_colours(self.address, packed)
 
-    def set_values(self, values, low, high, palette, missing):
+    def set_values(
+        self, values: Array, low: float, high: float, palette: Array, missing: int
+    ) -> None:
         self.module.set_values(self.address, values, low, high, palette, missing)
 
 
 class _StockNodes:
     """Draws with Coin's SoIndexedFaceSet."""
 
-    def __init__(self, field):
+    def __init__(self, field: Field) -> None:
         self.points, self.rays, self.normals = field.points, field.rays, field.normals
         self.colours = coin.SoPackedColor()
         binding = coin.SoMaterialBinding()
@@ -87,11 +95,11 @@ class _StockNodes:
             self.shape,
         )
 
-    def set_heights(self, heights):
+    def set_heights(self, heights: Array) -> None:
         points = self.points + heights[:, None] * self.rays
         self.coordinates.point.setValues(0, len(points), list(map(tuple, points.tolist())))
 
-    def set_colours(self, packed):
+    def set_colours(self, packed: Array) -> None:
         opaque = packed | np.uint32(0xFF)
         self.colours.orderedRGBA.setValues(0, len(packed), opaque.tolist())
 
@@ -103,7 +111,7 @@ class FieldView:
     calls belong to the window's thread.
     """
 
-    def __init__(self, field, stock_nodes=False):
+    def __init__(self, field: Field, stock_nodes: bool = False) -> None:
         # The field itself stays alive: its arrays are views of it.
         self.field = field
         self.points, self.rays = field.points, field.rays
@@ -122,12 +130,12 @@ class FieldView:
         self.set_heights(field.height)
         self.drawn.set_colours(np.full(len(self.points), 0xB0B0B0FF, dtype=np.uint32))
 
-    def set_heights(self, heights):
+    def set_heights(self, heights: Array) -> None:
         """Moves the samples: ``heights`` (n,) mm along the rays. Colours stay as they are."""
         self.heights = self._one_each(heights, np.float64).copy()
         self.drawn.set_heights(self.heights)
 
-    def set_colours(self, colours):
+    def set_colours(self, colours: Array) -> None:
         """``colours``: (n, 4) uint8 RGBA, or (n,) uint32 0xRRGGBBAA; drawn opaque."""
         colours = np.asarray(colours)
         if colours.ndim == 2:
@@ -136,7 +144,7 @@ class FieldView:
             colours = np.ascontiguousarray(colours).view(">u4").ravel().astype(np.uint32)
         self.drawn.set_colours(self._one_each(colours, np.uint32))
 
-    def colour_by(self, mode, *limits, values=None):
+    def colour_by(self, mode: str, *limits: Any, values: Array | None = None) -> None:
         """Colours by one of MODES.
 
         deviation: ``limits`` are lower and upper limit and the end of the ramps, mm; then, if not
@@ -174,15 +182,15 @@ class FieldView:
                 modes=", ".join(MODES),
             )
 
-    def _set_values(self, values, low, high, palette):
+    def _set_values(self, values: Array, low: float, high: float, palette: Array) -> None:
         missed = (self.flags & core.MISSED) != 0
         values = np.where(missed, np.nan, values)
         (missing,) = core.colour_scale(-1.0, 1.0, 2.0, [np.nan])
         self.drawn.set_values(values, low, high, palette, int(missing))
 
-    def _known(self, mode):
+    def _known(self, mode: str) -> Array:
         if mode == REMOVED:
-            return self.field.stock_height - self.heights
+            return np.maximum(self.field.stock_height - self.heights, 0.0)
         if mode == UNCERTAINTY:
             if len(self.field.height_sd) != len(self.points):
                 raise InputError(
@@ -192,7 +200,7 @@ class FieldView:
             return self.field.height_sd
         raise InputError("gui.colour_values", "colours by {mode} need its values", mode=mode)
 
-    def _one_each(self, values, kind):
+    def _one_each(self, values: Array, kind: Any) -> Array:
         values = np.ascontiguousarray(values, dtype=kind)
         if values.shape != (len(self.points),):
             raise InputError(
@@ -203,7 +211,7 @@ class FieldView:
             )
         return values
 
-    def pick(self, view, position):
+    def pick(self, view: View3D, position: Sequence[float]) -> int | None:
         """The sample drawn at ``position`` (x, y in pixels from the lower left) of a FreeCAD 3D
         view; None beside the field. Other things in front are looked through."""
         width, height = view.getSize()
@@ -220,7 +228,7 @@ class FieldView:
         root.unref()
         return index
 
-    def pick_in(self, root, region, position):
+    def pick_in(self, root: Node, region: Any, position: Sequence[float]) -> int | None:
         """The same in a scene of one's own: ``root`` with camera and ``node``."""
         action = coin.SoRayPickAction(region)
         action.setPoint(coin.SbVec2s(int(position[0]), int(position[1])))
@@ -235,7 +243,7 @@ class FieldView:
         tops = self.points[corners] + self.heights[corners, None] * self.rays[corners]
         return int(corners[np.linalg.norm(tops - at, axis=1).argmin()])
 
-    def _placed(self, scene, region):
+    def _placed(self, scene: Node, region: Any) -> Any:
         """The matrix at which the scene draws the node; unity where it does not."""
         search = coin.SoSearchAction()
         search.setNode(self.node)
@@ -247,6 +255,6 @@ class FieldView:
         return matrix.getMatrix()
 
 
-def _middles(low, high):
+def _middles(low: float, high: float) -> list[float]:
     """The values in the middle of a palette's colours."""
     return (low + (high - low) * (np.arange(PALETTE) + 0.5) / PALETTE).tolist()

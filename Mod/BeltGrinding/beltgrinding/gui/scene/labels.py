@@ -1,9 +1,12 @@
 """Texts and legends in the 3D view as pictures that Qt draws: smooth letters in any font, and a ground."""
 
+from __future__ import annotations
+
 import numpy as np
 from pivy import coin
 
 from ..common.compat import QtCore, QtGui
+from ..common.kinds import Colour, Image, Node
 from ..common.theme import theme
 
 LETTER = 13  # pixels of the screen
@@ -11,13 +14,13 @@ PAD = 5
 OPACITY = 225  # of 255: the ground
 
 
-def put_image(node, image):
+def put_image(node: Node, image: Image | None) -> None:
     """Gives a SoImage the pixels of a QImage; none of None."""
     size, data = pixels(image)
     node.image.setValue(coin.SbVec2s(*size), 4 if data else 0, data)
 
 
-def pixels(image):
+def pixels(image: Image | None) -> tuple[tuple[int, int], bytes]:
     """((width, height), bytes from the lower left, RGBA) of a QImage; ((1, 1), b"") of None."""
     if image is None:
         return (1, 1), b""
@@ -27,7 +30,7 @@ def pixels(image):
     return (turned.width(), turned.height()), rows.tobytes()
 
 
-def label(text, colour):
+def label(text: str, colour: Colour) -> Node:
     """A SoImage that shows a text to the right of where it stands, with a bar of a colour (as Qt takes it)."""
     ratio = QtGui.QGuiApplication.primaryScreen().devicePixelRatio()
     font = QtGui.QFont(QtGui.QApplication.font())

@@ -1,6 +1,8 @@
 """Short strokes on the ground part along which the last pass scratched it; where scratches of two directions stay, in
 another colour."""
 
+from __future__ import annotations
+
 import json
 
 import numpy as np
@@ -8,6 +10,8 @@ from pivy import coin
 
 from ...inspection import finish
 from ...objects.fields import field_of
+from ...objects.kinds import DocumentObject, Field
+from ..common.kinds import Array, Node, Rgb
 from .shapes3d import separator, unpickable
 
 MOST = 1000  # strokes: enough to see the lay, few enough to see what lies below
@@ -17,9 +21,9 @@ WIDTH = 1.5  # pixels
 PLAIN, CROSSED = (0.10, 0.10, 0.12), (0.85, 0.10, 0.10)
 
 
-def lay_strokes(obj):
+def lay_strokes(obj: DocumentObject) -> Node | None:
     """Coin node of the strokes of a Deviation; None where its result has no lay, or another result is shown."""
-    simulation = getattr(obj, "Simulation", None)
+    simulation: DocumentObject = getattr(obj, "Simulation", None)
     field = None if simulation is None else field_of(simulation)
     if field is None or field.finish is None or field.size != obj.Mesh.CountPoints:
         return None
@@ -39,7 +43,7 @@ def lay_strokes(obj):
     return root
 
 
-def strokes(field, rest, angle_deg, most=MOST):
+def strokes(field: Field, rest: float, angle_deg: float, most: int = MOST) -> tuple[Array, Array]:
     """((k, 2, 3) mm, ends of strokes along the lay on the surface as it was ground, at most some more than ``most``;
     (k,) whether scratches of another direction stay there). ``rest``, ``angle_deg``: as of ``finish.crossed``.
     """
@@ -64,7 +68,7 @@ def strokes(field, rest, angle_deg, most=MOST):
     return np.stack([middle - half, middle + half], axis=1), known
 
 
-def _lines(ends, colour):
+def _lines(ends: Array, colour: Rgb) -> Node:
     tone, coordinates, lines = coin.SoBaseColor(), coin.SoCoordinate3(), coin.SoLineSet()
     tone.rgb = colour
     points = ends.reshape(-1, 3)

@@ -1,9 +1,14 @@
 """Places of the faces, laid over them in a colour for each state: what passes leave out, what stays out of tolerance."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping
+
 import numpy as np
 from pivy import coin
 
 from ...objects.raster_path import NO_PASS, NO_ROOM
+from ..common.kinds import Array, Node, Rgb
 from .shapes3d import material, separator, triangles, unpickable
 
 COLOURS = {NO_ROOM: (0.76, 0.13, 0.52), NO_PASS: (0.98, 0.62, 0.12)}  # of what passes leave out
@@ -11,7 +16,9 @@ CREASE = 0.6  # rad
 NEARER = -2.0  # polygon offset: in front of the face that it lies in
 
 
-def left_out(points, indices, states, colours=COLOURS):
+def left_out(
+    points: Array, indices: Array, states: Array, colours: Mapping[int, Rgb] = COLOURS
+) -> Node:
     """Coin node of triangles (m, 3) on points (n, 3) mm with ``states`` (n,): each in the colour of most of its
     corners. ``colours``: {state: (red, green, blue) in [0, 1]}; other states are not drawn."""
     root = separator(unpickable())

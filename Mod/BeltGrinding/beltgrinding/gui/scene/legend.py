@@ -3,12 +3,18 @@
 An end of the bar is an arrow where values beyond it have its colour, or may have.
 """
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 from pivy import coin
 
 from ...engine import core
 from ...objects import preferences
 from ..common.compat import translate
+from ..common.kinds import Array
 from ..common.theme import theme
 from . import legend_picture
 from .labels import pixels
@@ -24,7 +30,14 @@ BETTER = 0.02  # of the part's points that another place must hide less, for the
 KEPT = 6  # pictures: views of other sizes, and both themes
 
 
-def scan(lower, upper, limit, out_of_date=False, difference=False, beyond=OPEN):
+def scan(
+    lower: float,
+    upper: float,
+    limit: float,
+    out_of_date: bool = False,
+    difference: bool = False,
+    beyond: tuple[bool, bool] = OPEN,
+) -> Spec:
     """The ``Spec`` of a scan's heights, or of their difference from the prediction; always in the
     standard colours without steps.
     """
@@ -35,7 +48,14 @@ def scan(lower, upper, limit, out_of_date=False, difference=False, beyond=OPEN):
     return _deviation(lower, upper, limit, out_of_date, 0, None, text, beyond, not difference)
 
 
-def deviation(lower, upper, limit, out_of_date=False, bands=0, beyond=OPEN):
+def deviation(
+    lower: float,
+    upper: float,
+    limit: float,
+    out_of_date: bool = False,
+    bands: int = 0,
+    beyond: tuple[bool, bool] = OPEN,
+) -> Spec:
     """The ``Spec`` of the deviation: (mm) tolerance band, and where the ramps end; ``bands``: steps of
     each ramp; ``beyond``: as OPEN.
     """
@@ -44,7 +64,17 @@ def deviation(lower, upper, limit, out_of_date=False, bands=0, beyond=OPEN):
     return _deviation(lower, upper, limit, out_of_date, bands, chosen, text, beyond, True)
 
 
-def _deviation(lower, upper, limit, out_of_date, bands, choice, text, beyond, judged):
+def _deviation(
+    lower: float,
+    upper: float,
+    limit: float,
+    out_of_date: bool,
+    bands: int,
+    choice: Any,
+    text: str,
+    beyond: tuple[bool, bool],
+    judged: bool,
+) -> Spec:
     values = [-limit + 2 * limit * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)]
     unit = preferences.deviation_unit()
     labels = {
@@ -75,15 +105,15 @@ def _deviation(lower, upper, limit, out_of_date, bands, choice, text, beyond, ju
     )
 
 
-def _warning(out_of_date):
+def _warning(out_of_date: bool) -> str:
     return translate("BeltGrinding", "out of date: simulate again") if out_of_date else ""
 
 
-def _height(value, limit):
+def _height(value: float, limit: float) -> float:
     return (value + limit) / (2 * limit)
 
 
-def label_values(lower, upper, limit, bands=0):
+def label_values(lower: float, upper: float, limit: float, bands: int = 0) -> list[float]:
     """The deviations (mm) that are written: ends, limits, and borders of the bands or halves; none
     so near to another that they would overlap.
     """
@@ -99,7 +129,7 @@ def label_values(lower, upper, limit, bands=0):
     return values
 
 
-def uncertainty(limit, out_of_date=False):
+def uncertainty(limit: float, out_of_date: bool = False) -> Spec:
     """The ``Spec`` of the deviation's standard deviation, up to ``limit`` mm."""
     colours = core.uncertainty_scale(
         limit, [limit * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)]
@@ -111,7 +141,7 @@ def uncertainty(limit, out_of_date=False):
     return Spec(colours, labels, text, ("", ""), (False, True), _warning(out_of_date))
 
 
-def temperature(start, span, out_of_date=False):
+def temperature(start: float, span: float, out_of_date: bool = False) -> Spec:
     """The ``Spec`` of the greatest temperature, from ``start`` degrees C to ``span`` K above."""
     colours = core.uncertainty_scale(span, [span * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)])
     labels = {k / 4: f"{start + span * k / 4:.0f}" for k in range(5)}
@@ -120,7 +150,7 @@ def temperature(start, span, out_of_date=False):
     return Spec(colours, labels, text, ("", ""), (False, False), _warning(out_of_date))
 
 
-def roughness(span, out_of_date=False):
+def roughness(span: float, out_of_date: bool = False) -> Spec:
     """The ``Spec`` of Ra, up to ``span`` µm."""
     colours = core.uncertainty_scale(span, [span * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)])
     labels = {k / 4: f"{span * k / 4:.2g}" for k in range(5)}
@@ -134,7 +164,7 @@ class Legend:
     fitAll. It takes a twelfth of a view's width and stands where it hides least of the part.
     """
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.spec, self.points = None, np.zeros((0, 3))
         self.column = 0  # how many others stand beside it
         self.places = {}  # of a view's size: the place where it stood last
@@ -159,7 +189,7 @@ class Legend:
         self.node.addChild(watch)
         self.node.addChild(annotation)
 
-    def show(self, spec):
+    def show(self, spec: Spec | None) -> None:
         """Shows a ``Spec``."""
         if spec != self.spec:
             self.spec = spec
@@ -167,11 +197,11 @@ class Legend:
             self.drawn = None
             self.node.touch()
 
-    def avoid(self, points):
+    def avoid(self, points: Array) -> None:
         """Points (n, 3) of the part, mm, that it should not hide."""
         self.points = np.asarray(points, dtype=float).reshape(-1, 3)
 
-    def _watch(self, _, action):
+    def _watch(self, _: object, action: Any) -> None:
         if self.spec is None or not action.isOfType(coin.SoGLRenderAction.getClassTypeId()):
             return
         state = action.getState()
@@ -196,7 +226,7 @@ class Legend:
         model = coin.SoModelMatrixElement.get(state)
         self.shift.translation = model.inverse().multVecMatrix(at)
 
-    def _seen(self, state, width, height):
+    def _seen(self, state: Any, width: float, height: float) -> Array:
         """(n, 2) pixels at which the part's points are drawn."""
         if not len(self.points):
             return np.zeros((0, 2))
@@ -209,7 +239,9 @@ class Legend:
         shares = 0.5 * (clip[inside, :2] / clip[inside, 3:] + 1.0)
         return shares * (width, height)
 
-    def _place(self, seen, size, width, height):
+    def _place(
+        self, seen: Array, size: Sequence[float], width: float, height: float
+    ) -> tuple[int, ...]:
         """(left, bottom) in pixels: at a side, or in a corner that FreeCAD leaves free."""
         border = round(BORDER * width)
         low, high = CROSS * height, (1.0 - CUBE) * height - size[1]
@@ -227,7 +259,7 @@ class Legend:
         return tuple(round(x) for x in choices[best])
 
 
-def _share(points, box):
+def _share(points: Array, box: Sequence[float]) -> float:
     """The share of points (n, 2) in a box (left, bottom, right, top)."""
     if not len(points):
         return 0.0

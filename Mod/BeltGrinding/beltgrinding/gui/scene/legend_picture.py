@@ -1,8 +1,12 @@
 """The picture of a legend: a colour bar with numbers and words, drawn by Qt at a view's size."""
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any, NamedTuple
 
 from ..common.compat import QtCore, QtGui
+from ..common.kinds import Colour, Image, Painter, Rectangle
 from ..common.theme import theme
 
 SHARE = 12  # of the view's width that it takes: a twelfth
@@ -17,15 +21,15 @@ OPACITY = 215  # of 255: the ground
 class Spec(NamedTuple):
     """What a legend says. ``labels``: by height (0 to 1) along the bar, the important ones first."""
 
-    colours: list  # 0xRRGGBBAA from the bar's lower end
-    labels: dict
+    colours: list[int]  # 0xRRGGBBAA from the bar's lower end
+    labels: dict[float, str]
     title: str
-    words: tuple  # below the bar and above it; "" for none
-    beyond: tuple  # bool: whether values lie beyond the lower end and the upper one
+    words: tuple[str, str]  # below the bar and above it; "" for none
+    beyond: tuple[bool, bool]  # bool: whether values lie beyond the lower end and the upper one
     warning: str
 
 
-def draw(spec, width, height, ratio=1.0):
+def draw(spec: Spec, width: float, height: float, ratio: float = 1.0) -> Image | None:
     """The QImage of a ``Spec`` for a view of ``width`` x ``height`` pixels; None where that is too small.
 
     ratio: device pixels of one of the screen's.
@@ -63,7 +67,7 @@ def draw(spec, width, height, ratio=1.0):
     painter.drawRoundedRect(QtCore.QRectF(0, 0, size.width(), size.height()), pad, pad)
     y = pad
 
-    def write(lines, colour):
+    def write(lines: Iterable[str], colour: Colour) -> None:
         nonlocal y
         painter.setPen(QtGui.QColor(colour))
         for text in lines:
@@ -89,7 +93,7 @@ def draw(spec, width, height, ratio=1.0):
     return image
 
 
-def _bar(painter, spec, box, tip):
+def _bar(painter: Painter, spec: Spec, box: Rectangle, tip: float) -> None:
     """The colours, and an arrow at an end beyond which values have its colour."""
     painter.setPen(QtCore.Qt.NoPen)
     colours = [
@@ -111,18 +115,18 @@ def _bar(painter, spec, box, tip):
             painter.drawPolygon(QtGui.QPolygonF([QtCore.QPointF(*c) for c in corners]))
 
 
-def placed(labels, apart):
+def placed(labels: Mapping[float, str], apart: float) -> list[tuple[float, str]]:
     """[(height, text)] of the labels for which there is room; the first ones of the dict go first."""
-    kept = []
+    kept: list[tuple[float, str]] = []
     for height, text in labels.items():
         if all(abs(height - other) >= 0.85 * apart for other, _ in kept):
             kept.append((height, text))
     return kept
 
 
-def wrapped(text, width, metrics):
+def wrapped(text: str, width: float, metrics: Any) -> list[str]:
     """The lines of a text that is broken between words where it is wider."""
-    lines = []
+    lines: list[str] = []
     for word in text.split():
         longer = f"{lines[-1]} {word}" if lines else word
         if lines and metrics.boundingRect(longer).width() <= width:

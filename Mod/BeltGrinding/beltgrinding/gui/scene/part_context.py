@@ -1,5 +1,9 @@
 """The faces of the part that are not ground, and all its edges, for orientation."""
 
+from __future__ import annotations
+
+from typing import Any
+
 import MeshPart
 import numpy as np
 import Part
@@ -7,22 +11,26 @@ from pivy import coin
 
 from ...engine import InputError
 from ...objects import job_data
+from ...objects.kinds import DocumentObject, PartShape
+from ..common.kinds import Array, Node, Surface
 
 GREY = (0.62, 0.64, 0.67)
 EDGE = (0.2, 0.2, 0.22)
 DEFLECTION = 0.001  # chord error, as a share of the part's diagonal
 ANGLE = 0.2  # rad, from facet to facet
 KEPT = 8  # tessellations
-_designs = []  # (what names it, shapes of the objects, design), the last one
-_rest = []  # (shape, numbers of its ground faces, (points, triangles) of the others), the last one
-_edge_lines = []  # (shape, (points, counts)), the last one
-_spread = []  # (shape, points of ``points_of_part``), the last one
-_tessellated = []  # (shape, deflection, (points, triangles)), the last one first
+_designs: list[Any] = []  # (what names it, shapes of the objects, design), the last one
+_rest: list[
+    Any
+] = []  # (shape, numbers of its ground faces, (points, triangles) of the others), the last one
+_edge_lines: list[Any] = []  # (shape, (points, counts)), the last one
+_spread: list[Any] = []  # (shape, points of ``points_of_part``), the last one
+_tessellated: list[Any] = []  # (shape, deflection, (points, triangles)), the last one first
 SPREAD = 600  # points over a part
 REST = "BeltGrindingRest"  # name of the node of the faces that are not ground
 
 
-def design_of(job):
+def design_of(job: DocumentObject) -> tuple[PartShape, list[int]]:
     """(shape, numbers of its ground faces from 1) as ``job_data.design``, which copies the shapes; the same
     shape again as long as the objects have theirs, so that what was made of it is found again. Raises
     InputError."""
@@ -38,7 +46,7 @@ def design_of(job):
     return found
 
 
-def rest_of_part(job):
+def rest_of_part(job: DocumentObject) -> Node:
     """Coin node with the job's part without the faces to be ground, and with its edges; not picked."""
     root = coin.SoSeparator()
     root.setName(REST)
@@ -68,7 +76,7 @@ def rest_of_part(job):
     return root
 
 
-def _others(shape, ground):
+def _others(shape: PartShape, ground: set[int]) -> Surface:
     """(points, triangles) of a shape's faces but those numbered ``ground``, from 1."""
     for kept, numbers, found in _rest:
         if numbers == ground and kept.isSame(shape):
@@ -81,7 +89,7 @@ def _others(shape, ground):
     return found
 
 
-def tessellated(shape, whole=None):
+def tessellated(shape: PartShape, whole: PartShape | None = None) -> Surface:
     """(points (n, 3), triangles (m, 3)) of a Part shape, as fine as it is drawn here; ``whole``: what it is a
     face of."""
     deflection = _deflection(whole or shape)
@@ -96,7 +104,7 @@ def tessellated(shape, whole=None):
     return found
 
 
-def points_of_part(job):
+def points_of_part(job: DocumentObject | None) -> Array:
     """(n, 3) some hundred points spread over a job's part by area, mm; none where it has no part."""
     if job is None:
         return np.zeros((0, 3))
@@ -111,7 +119,7 @@ def points_of_part(job):
     return _spread[0][1]
 
 
-def mesh_of_part(job):
+def mesh_of_part(job: DocumentObject) -> Surface:
     """(points (n, 3), triangles (m, 3)) of a job's part, mm; none of both where it has no part."""
     try:
         return tessellated(design_of(job)[0])
@@ -119,7 +127,7 @@ def mesh_of_part(job):
         return np.zeros((0, 3)), np.zeros((0, 3), dtype=int)
 
 
-def _spread_over(points, triangles):
+def _spread_over(points: Array, triangles: Array) -> Array:
     a, b, c = points[triangles].transpose(1, 0, 2)
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
     if not areas.sum() > 0.0:
@@ -131,7 +139,7 @@ def _spread_over(points, triangles):
     return a[chosen] + u * (b - a)[chosen] + v * (c - a)[chosen]
 
 
-def _meshed(shape, deflection):
+def _meshed(shape: PartShape, deflection: float) -> Surface:
     """(points, triangles) of a shape: round holes are round, whatever the size of the part. No two faces share
     a point: light would run over from one to the other."""
     try:
@@ -155,7 +163,7 @@ def _meshed(shape, deflection):
     return points.reshape(-1, 3), np.array(faces, dtype=int).reshape(-1, 3)
 
 
-def edges_of_part(job):
+def edges_of_part(job: DocumentObject) -> Node:
     """Coin node with the edges of the job's part; not picked."""
     root = coin.SoSeparator()
     try:
@@ -169,11 +177,11 @@ def edges_of_part(job):
     return root
 
 
-def _deflection(shape):
+def _deflection(shape: PartShape) -> float:
     return DEFLECTION * max(shape.BoundBox.DiagonalLength, 1e-6)
 
 
-def _edges(shape):
+def _edges(shape: PartShape) -> Node:
     """The edges as thin lines: without them, faces of one brightness run into one another, and the
     coloured ones have no light."""
     root = coin.SoSeparator()
@@ -191,7 +199,7 @@ def _edges(shape):
     return root
 
 
-def _lines(shape):
+def _lines(shape: PartShape) -> tuple[list[Any], list[int]]:
     """(points, counts): the shape's edges as lines, one after the other."""
     for kept, found in _edge_lines:
         if kept.isSame(shape):

@@ -1,8 +1,11 @@
 """Arrows along a path of the wheel: which way it goes, where it grinds."""
 
+from __future__ import annotations
+
 import numpy as np
 from pivy import coin
 
+from ..common.kinds import Array, Node, Rgb, Surface
 from .shapes3d import separator, triangles, unpickable
 
 SIZE, THICK = (
@@ -14,7 +17,7 @@ MOST = 400
 AROUND = 6  # corners of an arrow's base
 
 
-def arrows(points, rapid, colour):
+def arrows(points: Array, rapid: Array, colour: Rgb) -> Node:
     """Coin node of arrows on the pieces of a line where it is not rapid. ``points``: (n, 3) mm; ``rapid``:
     (n,) whether the way to the point is; ``colour``: rgb."""
     points = np.asarray(points, dtype=float)
@@ -36,7 +39,7 @@ def arrows(points, rapid, colour):
     return root
 
 
-def placed(points, rapid, length):
+def placed(points: Array, rapid: Array, length: float) -> tuple[Array, Array]:
     """(places (k, 3), unit directions (k, 3)): one in the middle of each piece between rapid moves, and
     more of them, evenly, where it is long."""
     steps = points[1:] - points[:-1]
@@ -60,7 +63,7 @@ def placed(points, rapid, length):
     return np.array(places)[chosen].reshape(-1, 3), np.array(ways)[chosen].reshape(-1, 3)
 
 
-def cones(places, ways, length):
+def cones(places: Array, ways: Array, length: float) -> Surface:
     """(points, triangles) of cones of a length, mm, whose middles lie at ``places`` and whose tips point
     along ``ways``."""
     # A direction across: with the axis along which the way goes least.

@@ -1,5 +1,9 @@
 """What playback draws: the field at a moment, the wheel on it, the rest of the part, the legend."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 from pivy import coin
 
@@ -8,11 +12,16 @@ from ...job.tolerances import colour_scale
 from ...objects import job_data, job_inputs, preferences
 from ...objects.belt_machine import BeltMachine
 from ...objects.deviation import Deviation, bands_of
+from ...objects.kinds import DocumentObject, ViewObject
 from ...objects.robot_path import RobotPath
+from ..common.kinds import Node
 from . import legend
 from .cell_view import CellView
 from .field_view import DEVIATION, FieldView
 from .part_context import points_of_part, rest_of_part
+
+if TYPE_CHECKING:
+    from ...engine import core
 
 SAME = 1e-9  # s
 
@@ -20,7 +29,9 @@ SAME = 1e-9  # s
 class Scene:
     """What is drawn: the field at a moment, the wheel on it, the rest of the part."""
 
-    def __init__(self, job, simulation, recording):
+    def __init__(
+        self, job: DocumentObject, simulation: DocumentObject, recording: core.Recording
+    ) -> None:
         self.recording, self.simulation = recording, simulation
         self.paths = job_inputs.tool_paths(job)
         programs = job_data.children(job, RobotPath)
@@ -50,19 +61,19 @@ class Scene:
         self.cell.root.addChild(self.legend.node)
         if deviation is None or not deviation.ViewObject.Visibility:
             self.cell.root.addChild(rest_of_part(job))  # else the deviation draws it
-        self.hidden = []  # (view, switch, what it showed)
+        self.hidden: list[tuple[ViewObject, Node, int]] = []  # (view, switch, what it showed)
         for obj in {part for part, _ in job.DesignFaces}:
             self._hide(obj.ViewObject, obj.ViewObject.SwitchNode)
         if deviation is not None:
             self._hide(deviation.ViewObject, deviation.ViewObject.SwitchNode)
             self._hide(deviation.ViewObject, deviation.ViewObject.Proxy.legend)
 
-    def _hide(self, view, switch):
+    def _hide(self, view: ViewObject, switch: Node) -> None:
         """Turns a switch of the scene off: the property Visibility would change the document."""
         self.hidden.append((view, switch, switch.whichChild.getValue()))
         switch.whichChild = coin.SO_SWITCH_NONE
 
-    def go(self, moment):
+    def go(self, moment: float) -> None:
         """Shows a moment, s."""
         self.time = min(max(moment, 0.0), self.duration)
         frame = self.recording.frame_at(self.time + SAME)
@@ -78,7 +89,7 @@ class Scene:
         self.cell.set_frame(base_from_tcp)
         self.place = (self.labels[k], pose, int(self.lines[k][pose]))
 
-    def _scale(self, job):
+    def _scale(self, job: DocumentObject) -> tuple[Any, ...]:
         """(lower, upper, end of the ramps, mm; bands; colours) as the Deviation is drawn."""
         scale, bands = colour_scale({"inspection": job_data.inspection(job)}), 0
         if self.deviation is not None and self.deviation.ColourLimit.Value > 0:
@@ -87,10 +98,10 @@ class Scene:
             bands = bands_of(self.deviation)
         return (*scale, bands, preferences.colours())
 
-    def _show_legend(self):
+    def _show_legend(self) -> None:
         self.legend.show(legend.deviation(*self.scale[:3], bands=self.scale[3]))
 
-    def recolour(self, job):
+    def recolour(self, job: DocumentObject) -> None:
         """Takes the scale over anew. What a changed Deviation has turned on is turned off again."""
         self.scale = self._scale(job)
         self._show_legend()
@@ -98,11 +109,11 @@ class Scene:
         for _, switch, _ in self.hidden:
             switch.whichChild = coin.SO_SWITCH_NONE
 
-    def _draw(self):
+    def _draw(self) -> None:
         self.field.set_heights(self.heights)
         self.field.colour_by(DEVIATION, *self.scale)
 
-    def close(self):
+    def close(self) -> None:
         """Leaves the 3D views as they were. The switches alone were turned, no property."""
         self.cell.close()
         for view, switch, child in self.hidden:

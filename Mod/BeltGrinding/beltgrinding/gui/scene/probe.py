@@ -1,12 +1,19 @@
 """A click on the deviation tells what is there."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
 import FreeCAD
 import FreeCADGui as Gui
 from pivy import coin
 
 from ...engine import InputError
 from ...objects import preferences, readout as readings
+from ...objects.kinds import DocumentObject
 from ..common.compat import QtCore, QtGui, translate
+from ..common.kinds import Json, Node, View3D
 from ..common.messages import error_text
 from . import field_view
 
@@ -18,7 +25,7 @@ class Probe(QtGui.QGroupBox):
     """Shows the sample under a click on a Deviation's mesh: at the cursor, in the status bar and here.
     With Shift, or when its box is checked, a marker stays in the document."""
 
-    def __init__(self, obj):
+    def __init__(self, obj: DocumentObject) -> None:
         super().__init__(translate("BeltGrinding", "Click on the surface"))
         self.obj = obj
         self.reader = readings.Reader(obj)
@@ -51,7 +58,7 @@ class Probe(QtGui.QGroupBox):
             view.getSceneGraph().addChild(self.dot)
             self.listening.append((view, call))
 
-    def release(self):
+    def release(self) -> None:
         """Takes everything out of the 3D views; call it when the panel closes."""
         self.fade.stop()
         self.label.hide()
@@ -65,7 +72,7 @@ class Probe(QtGui.QGroupBox):
         self.listening = []
         self.field = self.picked = None
 
-    def _clicked(self, view, event):
+    def _clicked(self, view: View3D, event: Json) -> None:
         if event["State"] != "DOWN" or event["Button"] != "BUTTON1":
             return  # the release is FreeCAD's, which selects
         self.label.hide()
@@ -79,7 +86,7 @@ class Probe(QtGui.QGroupBox):
         if reading is not None:
             self.show_reading(reading, event["ShiftDown"] or self.keep.isChecked())
 
-    def _seen(self, view, position):
+    def _seen(self, view: View3D, position: Sequence[float]) -> dict[str, Any] | None:
         """The reading at a pixel of a view, None beside the field. What is drawn on the surface, such
         as the path, is looked through."""
         if not self.obj.ViewObject.Visibility:
@@ -100,7 +107,7 @@ class Probe(QtGui.QGroupBox):
         seen = next((one for one in under if one.get("Object") == self.obj.Name), None)
         return None if seen is None else self.reader.at((seen["x"], seen["y"], seen["z"]))
 
-    def show_reading(self, reading, keep=False):
+    def show_reading(self, reading: Json, keep: bool = False) -> None:
         """Shows a reading; ``keep``: and leaves a marker."""
         lines = describe(reading)
         self.text.setText("\n".join(lines))
@@ -116,7 +123,7 @@ class Probe(QtGui.QGroupBox):
             readings.make_marker(self.obj, reading, lines)
 
 
-def describe(reading):
+def describe(reading: Json) -> list[str]:
     """The lines of text that tell a reading."""
     verdicts = {
         readings.IN_TOLERANCE: translate("BeltGrinding", "in tolerance"),
@@ -149,12 +156,12 @@ def describe(reading):
     ]
 
 
-def told(value, sign="+"):
+def told(value: float, sign: str = "+") -> str:
     """A height in mm, in the unit of the preferences."""
     return preferences.length_text(value, 1, sign)
 
 
-def _dot():
+def _dot() -> tuple[Node, Node]:
     """(switch, translation): a dot over everything, not picked, not counted by fitAll; hidden."""
     switch = coin.SoSwitch()
     outer = coin.SoType.fromName("SoSkipBoundingGroup").createInstance() or coin.SoSeparator()

@@ -1,12 +1,18 @@
 """A robot's arm as solids, in the shape that collisions take it in, at the pose of a path."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
 import numpy as np
 from pivy import coin
 
 from ...base import frames
 from ...engine import InputError
 from ...presets import robot as robots
-from ...presets.robot_shape import LINKS
+from ...geometry.body_names import LINKS
+from ..common.kinds import Array, Json, Surface
 from .shapes3d import material, separator, set_matrix, triangles
 
 LINK, HUB = (0.96, 0.55, 0.14), (0.20, 0.24, 0.30)
@@ -17,14 +23,14 @@ class RobotView:
     """Draws a job's robot; nothing where there is none, or where it does not reach. ``bodies``: {name as
     events have it: node} of the links."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.root = coin.SoSwitch()
         self.places, self.bodies = [], {}
         self.arm = self.joints = None
         self.shapes, self.at = [], []  # of the links: (points, triangles), frames at the pose
         self.followed = None  # (n, 6) degrees, where the whole path has been followed
 
-    def choose(self, robot):
+    def choose(self, robot: Json) -> None:
         """A job's robot, with its defaults; its errors are the panel's."""
         self.joints = self.followed = None
         self.root.removeAllChildren()
@@ -40,7 +46,7 @@ class RobotView:
             self.flange_from_tcp = frames.from_data(robot.get("flange_from_tcp"))
             self.near = np.clip(np.zeros(6), self.arm.lower, self.arm.upper)
 
-    def place(self, work_from_base, base_from_tcp, index):
+    def place(self, work_from_base: Array, base_from_tcp: Array, index: int) -> None:
         """Puts the arm where it holds the tool frame at the pose number ``index`` (from 0)."""
         self.joints = None
         if self.arm is not None:
@@ -55,7 +61,7 @@ class RobotView:
         for place, frame in zip(self.places, self.at):
             set_matrix(place, frame)
 
-    def solids(self):
+    def solids(self) -> dict[str, Surface]:
         """{name: (points (n, 3) mm, triangles (m, 3))} of the links as drawn; empty where they are not."""
         if self.joints is None:
             return {}
@@ -65,7 +71,7 @@ class RobotView:
             if len(faces)
         }
 
-    def _build(self, links):
+    def _build(self, links: Iterable[Any]) -> None:
         """Nodes of the links, to be placed."""
         for name, parts in zip(LINKS, links):
             place, solid = coin.SoMatrixTransform(), coin.SoSeparator()
@@ -79,7 +85,7 @@ class RobotView:
             if solid.getNumChildren():
                 self.bodies[name] = solid
 
-    def _solve(self, base_from_tcp, index):
+    def _solve(self, base_from_tcp: Array, index: int) -> Array | None:
         """Joints in rad: those with which the path is followed, else the nearest to the last."""
         if self.followed is not None and index < len(self.followed):
             joints = np.radians(self.followed[index])
@@ -93,7 +99,7 @@ class RobotView:
         return rows[np.argmin(np.abs(rows - self.near).max(axis=1))]
 
 
-def _joined(parts):
+def _joined(parts: Iterable[Surface]) -> Surface:
     """(points, triangles) of several meshes as one."""
     parts = [
         (np.asarray(p, dtype=float).reshape(-1, 3), np.asarray(f, dtype=int)) for p, f in parts

@@ -1,9 +1,16 @@
 """Coin nodes of things that are drawn for orientation: the contact wheel, frames, bodies."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from pivy import coin
+
+from ...objects.kinds import DocumentObject
+from ..common.kinds import Array, Node, Rgb, Surface
 
 RUBBER, CORE, BODY = (0.20, 0.22, 0.25), (0.72, 0.74, 0.78), (0.55, 0.60, 0.68)
 BELT = (0.48, 0.25, 0.15)  # the grain
@@ -14,26 +21,26 @@ ACROSS = 9  # points of its profile across the width
 DEFLECTION = 0.002  # chord error of a body, as a share of its diagonal
 
 
-def set_matrix(node, frame):
+def set_matrix(node: Node, frame: Array) -> None:
     """Gives a SoMatrixTransform a (4, 4) frame; Coin multiplies rows from the left."""
     node.matrix.setValue(coin.SbMatrix(*np.asarray(frame, dtype=float).T.ravel().tolist()))
 
 
-def separator(*nodes):
+def separator(*nodes: Node) -> Node:
     root = coin.SoSeparator()
     for node in nodes:
         root.addChild(node)
     return root
 
 
-def material(colour, transparency=0.0):
+def material(colour: Rgb, transparency: float = 0.0) -> Node:
     node = coin.SoMaterial()
     node.diffuseColor = colour
     node.transparency = transparency
     return node
 
 
-def faint():
+def faint() -> Node:
     """A material that makes what comes after it see-through, whatever its colour."""
     node = coin.SoMaterial()
     for name in ("ambientColor", "diffuseColor", "specularColor", "emissiveColor", "shininess"):
@@ -43,13 +50,13 @@ def faint():
     return node
 
 
-def unpickable():
+def unpickable() -> Node:
     style = coin.SoPickStyle()
     style.style = coin.SoPickStyle.UNPICKABLE
     return style
 
 
-def triangles(points, indices, crease=0.5, solid=False):
+def triangles(points: Any, indices: Any, crease: float = 0.5, solid: bool = False) -> Node:
     """Faces of points (n, 3) and triangles (m, 3), lit from both sides unless ``solid``."""
     hints = coin.SoShapeHints()
     hints.vertexOrdering = coin.SoShapeHints.COUNTERCLOCKWISE
@@ -65,7 +72,7 @@ def triangles(points, indices, crease=0.5, solid=False):
     return separator(hints, coordinates, faces)
 
 
-def profile(machine):
+def profile(machine: DocumentObject) -> Array:
     """Points [y, radius] (n, 2) in mm across a belt machine's wheel, from one side to the other."""
     radius, width = machine.WheelRadius.Value, machine.WheelWidth.Value
     turned = [(point.x, point.y) for point in machine.Profile]
@@ -80,7 +87,7 @@ def profile(machine):
     return np.stack([y, radius - drop], axis=1)
 
 
-def revolved(line):
+def revolved(line: Array) -> Surface:
     """(points, triangles) of a line [y, radius] turned about the y axis."""
     angles = np.linspace(0.0, 2.0 * math.pi, AROUND, endpoint=False)
     y, radius = line.T
@@ -99,7 +106,7 @@ def revolved(line):
     return points, np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
 
 
-def wheel(machine):
+def wheel(machine: DocumentObject) -> Node:
     """The contact wheel in the contact frame (its centre at z = -R): core, rim, the belt around it, axes."""
     line = profile(machine)
     radius = machine.WheelRadius.Value
@@ -123,7 +130,7 @@ def wheel(machine):
     )
 
 
-def axes(length):
+def axes(length: float) -> Node:
     """Three arrows of mm ``length``: x red, y green, z blue."""
     root = coin.SoSeparator()
     for k, colour in enumerate(AXES):
@@ -135,13 +142,13 @@ def axes(length):
     return root
 
 
-def body(obj):
+def body(obj: DocumentObject) -> Node:
     """A Part or Mesh object, its coordinates taken in whatever frame the node is put."""
     points, faces = mesh_of(obj)
     return separator(material(BODY), triangles(points, faces))
 
 
-def mesh_of(obj):
+def mesh_of(obj: DocumentObject) -> tuple[Sequence[Any], Sequence[Any]]:
     """(points (n, 3), triangles (m, 3)) of a Part or Mesh object, its placement applied."""
     from ...objects.geometry import placed_shape
 

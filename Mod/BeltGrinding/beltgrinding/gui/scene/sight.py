@@ -1,5 +1,10 @@
 """The 3D views' cameras, turned to a place of the part from where it is seen; what hides it fades."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
 import FreeCADGui as Gui
 import numpy as np
 from pivy import coin
@@ -7,9 +12,14 @@ from pivy import coin
 from ...engine import InputError, core
 from ...inspection import sight
 from ...objects import belt_machine
+from ...objects.kinds import DocumentObject, Field, Point
+from ..common.kinds import Array, Surface, View3D
 from .camera import fly_to
 from .part_context import REST, design_of, tessellated
 from .shapes3d import faint
+
+if TYPE_CHECKING:
+    from .cell_view import CellView
 
 SEEN = 0.6  # of a place: less, and what hides it fades
 SLACK = 1e-3  # of the part's diagonal: within it, the part's own triangles do not hide a place
@@ -21,13 +31,15 @@ WHEEL_AXIS = (-0.4, 0.4)  # of the wheel's width: points of it that should be se
 class Sight:
     """Looks at places of a job's part in all 3D views of its document."""
 
-    def __init__(self, job):
+    def __init__(self, job: DocumentObject) -> None:
         self.document, self.name = job.Document, job.Name
         self.part = None  # (points, triangles)
         self.faded = []  # (separator, node in it)
         self.cell = None
 
-    def at_samples(self, field, samples, size, middle=None):
+    def at_samples(
+        self, field: Field, samples: Any, size: float, middle: Point | None = None
+    ) -> None:
         """Looks at ``samples`` (indices; the first is the one that matters) of a core.HeightField, at
         ``middle`` (mm) or the first, ``size`` mm around."""
         self.clear()
@@ -45,7 +57,7 @@ class Sight:
         for view in self._views():
             fly_to(view, target.tolist(), away.tolist(), size)
 
-    def at_contact(self, cell, point, size):
+    def at_contact(self, cell: CellView, point: Array, size: float) -> None:
         """Looks at ``point`` (3,) mm of the part at the pose of a CellView, from aside of the wheel."""
         self.clear()
         frames, moved = cell.frames(), cell.carried(cell.frames())
@@ -88,7 +100,7 @@ class Sight:
         for view in views:
             fly_to(view, target.tolist(), (moved[:3, :3] @ to).tolist(), size)
 
-    def clear(self):
+    def clear(self) -> None:
         """What has faded is drawn as before."""
         for root, node in self.faded:
             if root.findChild(node) >= 0:
@@ -98,13 +110,15 @@ class Sight:
             self.cell.fade(())
             self.cell = None
 
-    def _towards(self, meshes, points, normals, wanted, slack):
+    def _towards(
+        self, meshes: Iterable[Surface], points: Array, normals: Array, wanted: Any, slack: float
+    ) -> tuple[Array, float]:
         surfaces = [_surface(*mesh) for mesh in meshes if len(mesh[1])]
         if not surfaces:
             return np.asarray(wanted, dtype=float), 1.0
         return sight.towards(core.Renderer(surfaces), points, normals, wanted, slack)
 
-    def _part(self):
+    def _part(self) -> Surface:
         if self.part is None:
             job = self.document.getObject(self.name)
             try:
@@ -113,14 +127,14 @@ class Sight:
                 self.part = np.zeros((0, 3)), np.zeros((0, 3), dtype=np.uint32)
         return self.part
 
-    def _diagonal(self):
+    def _diagonal(self) -> float:
         points, _ = self._part()
         return float(np.linalg.norm(np.ptp(points, axis=0))) if len(points) else 0.0
 
-    def _views(self):
+    def _views(self) -> list[View3D]:
         return Gui.getDocument(self.document.Name).mdiViewsOfType("Gui::View3DInventor")
 
-    def _fade_rest(self):
+    def _fade_rest(self) -> None:
         for view in self._views():
             search = coin.SoSearchAction()
             search.setName(REST)
@@ -135,7 +149,7 @@ class Sight:
                 self.faded.append((root, node))
 
 
-def _surface(points, triangles):
+def _surface(points: Any, triangles: Any) -> dict[str, Array]:
     return {
         "vertices": np.asarray(points, dtype=float),
         "triangles": np.asarray(triangles, dtype=np.uint32),

@@ -1,19 +1,23 @@
 """The stock before grinding, as a see-through shell on the faces to be ground."""
 
+from __future__ import annotations
+
 import numpy as np
 from pivy import coin
 
 from ...engine import InputError
 from ...objects import sides
+from ...objects.kinds import DocumentObject, PartShape
+from ..common.kinds import Array, Node, Surface
 from .part_context import design_of, tessellated
 from .shapes3d import material, separator, triangles, unpickable
 
 COLOUR, SEE_THROUGH = (0.96, 0.72, 0.30), 0.62
 CREASE = 0.6  # rad
-_sides = []  # (shape, its ``_outwards``), the last one
+_sides: list[tuple[PartShape, dict[int, float]]] = []  # (shape, its ``_outwards``), the last one
 
 
-def shell(job, allowance):
+def shell(job: DocumentObject, allowance: float) -> Node:
     """Coin node of a uniform ``allowance`` (mm) on a job's faces; empty where there is none."""
     root = separator(unpickable())
     try:
@@ -43,7 +47,7 @@ def shell(job, allowance):
     return root
 
 
-def _outwards(shape):
+def _outwards(shape: PartShape) -> dict[int, float]:
     """{hash of a face: 1, or -1 where its solid is inside out} of the faces of a shape's solids."""
     for kept, found in _sides:
         if kept.isEqual(shape):
@@ -56,7 +60,7 @@ def _outwards(shape):
     return found
 
 
-def thickened(points, faces, thickness):
+def thickened(points: Array, faces: Array, thickness: float) -> Surface:
     """(points, triangles) of a surface's copy, ``thickness`` mm along its normals, and of the walls between
     their borders."""
     normals = np.zeros_like(points)

@@ -1,16 +1,20 @@
 """A cluster of the verdict, marked in the 3D views: its outline and its worst place."""
 
+from __future__ import annotations
+
 import FreeCADGui as Gui
 import numpy as np
 from pivy import coin
 
+from ...objects.kinds import Document, Field
+from ..common.kinds import Array
 from .shapes3d import separator, unpickable
 
 COLOUR = (0.85, 0.0, 0.55)  # in neither ramp of the deviation
 WIDTH = 3  # pixels
 
 
-def outline(triangles, inside):
+def outline(triangles: Array, inside: Array) -> Array:
     """(k, 2) samples at the ends of the edges around the samples ``inside`` (n, bool): of the
     ``triangles`` (m, 3) that lie there with all corners, the edges that only one has.
     """
@@ -23,7 +27,7 @@ def outline(triangles, inside):
 class VerdictScene:
     """Lines and a dot over everything, not picked, not counted by fitAll."""
 
-    def __init__(self, document):
+    def __init__(self, document: Document) -> None:
         self.switch = coin.SoSwitch()
         outer = coin.SoType.fromName("SoSkipBoundingGroup").createInstance() or coin.SoSeparator()
         light, colour, style = coin.SoLightModel(), coin.SoBaseColor(), coin.SoDrawStyle()
@@ -48,7 +52,7 @@ class VerdictScene:
         for scene in self.scenes:
             scene.addChild(self.switch)
 
-    def show(self, field, inside, worst):
+    def show(self, field: Field, inside: Array, worst: int) -> None:
         """Marks the samples ``inside`` (n, bool) of a core.HeightField, and the sample ``worst``."""
         edges = outline(field.triangles, inside)
         used, flat = np.unique(edges, return_inverse=True)
@@ -64,10 +68,10 @@ class VerdictScene:
         self.place.translation = tuple(float(x) for x in top)
         self.switch.whichChild = coin.SO_SWITCH_ALL
 
-    def hide(self):
+    def hide(self) -> None:
         self.switch.whichChild = coin.SO_SWITCH_NONE
 
-    def close(self):
+    def close(self) -> None:
         """Takes everything out of the 3D views."""
         for scene in self.scenes:
             if scene.findChild(self.switch) >= 0:

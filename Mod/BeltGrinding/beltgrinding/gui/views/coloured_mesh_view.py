@@ -4,13 +4,21 @@ A colour says a value, so nothing may change it: no light falls on it, and what 
 is framed, not painted.
 """
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from pivy import coin
 
+from ...objects.kinds import ViewObject
 from ..common.compat import make_matt
 from ..scene.legend import Legend
 from ..scene.part_context import points_of_part
 from .showing import show_stock
 from .view import View
+
+if TYPE_CHECKING:
+    from ..scene.legend_picture import Spec
 
 
 class ColouredMeshView(View):
@@ -18,12 +26,12 @@ class ColouredMeshView(View):
     None where nothing can be said yet.
     """
 
-    def __init__(self, view):
+    def __init__(self, view: ViewObject) -> None:
         super().__init__(view)
         view.Coloring = True
         frame_selected(view)
 
-    def attach(self, view):
+    def attach(self, view: ViewObject) -> None:
         super().attach(view)
         light = coin.SoLightModel()
         light.model = coin.SoLightModel.BASE_COLOR
@@ -33,17 +41,17 @@ class ColouredMeshView(View):
         view.RootNode.insertChild(self.legend, 0)  # before what says how the mesh is drawn
         self.update_legend()
 
-    def finishRestoring(self):
+    def finishRestoring(self) -> None:
         frame_selected(self.view)  # in a document of 0.1.0 it is painted
         self.colour()
         self.update_legend()
 
-    def onChanged(self, view, name):
+    def onChanged(self, view: ViewObject, name: str) -> None:
         if name == "Visibility" and getattr(self, "legend", None) is not None:
             self._show_legend()
             show_stock(view.Object.getParentGroup())
 
-    def colour(self):
+    def colour(self) -> None:
         """Draws the colours: 0.20 forgets them on reopening and whenever the mesh is set."""
         make_matt(self.view)
         obj = self.view.Object
@@ -51,16 +59,16 @@ class ColouredMeshView(View):
             self.view.Coloring = False
             self.view.Coloring = True
 
-    def legend_spec(self):
+    def legend_spec(self) -> Spec | None:
         raise NotImplementedError
 
-    def update_legend(self):
+    def update_legend(self) -> None:
         spec = self.legend_spec()
         if spec is not None:
             self.drawn.show(spec)
             self._show_legend()
 
-    def _show_legend(self):
+    def _show_legend(self) -> None:
         shown = self.view.Visibility
         if shown:
             self.drawn.avoid(points_of_part(self.view.Object.getParentGroup()))
@@ -74,7 +82,7 @@ class ColouredMeshView(View):
                     column += 1
 
 
-def frame_selected(view):
+def frame_selected(view: ViewObject) -> None:
     """Marks a mesh under the mouse, or selected, by a frame: FreeCAD would paint it in one colour."""
     if view.SelectionStyle != "BoundBox":
         view.SelectionStyle = "BoundBox"

@@ -1,5 +1,9 @@
 """View provider of the deviation: vertex colours that survive reopening, legend, rest of the part."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 from pivy import coin
 
 from ...objects.deviation import (
@@ -12,12 +16,16 @@ from ...objects.deviation import (
     roughness_span,
     temperature_span,
 )
+from ...objects.kinds import DocumentObject, ViewObject
 from ..common.compat import QtCore
 from ..scene import legend
 from ..scene.crisp_colours import CrispColours
 from ..scene.lay_strokes import lay_strokes
 from ..scene.part_context import rest_of_part
 from .coloured_mesh_view import ColouredMeshView
+
+if TYPE_CHECKING:
+    from ..scene.legend_picture import Spec
 
 LEGEND = (
     "ToleranceLower",
@@ -40,7 +48,7 @@ class DeviationView(ColouredMeshView):
     ICON = "BeltGrinding_Deviation"
     COMMANDS = ("BeltGrinding_Simulate",)
 
-    def __init__(self, view):
+    def __init__(self, view: ViewObject) -> None:
         super().__init__(view)
         view.addProperty(
             "App::PropertyBool", "RestOfPart", "Deviation", "draw the part's other faces in grey"
@@ -49,7 +57,7 @@ class DeviationView(ColouredMeshView):
         self._lay_property(view)
 
     @staticmethod
-    def _lay_property(view):
+    def _lay_property(view: ViewObject) -> None:
         if "Scratches" in view.PropertiesList:
             return
         view.addProperty(
@@ -60,7 +68,7 @@ class DeviationView(ColouredMeshView):
         )
         view.Scratches = True
 
-    def attach(self, view):
+    def attach(self, view: ViewObject) -> None:
         self.crisp = CrispColours(view.RootNode)
         self.lay = coin.SoSwitch()
         super().attach(view)
@@ -70,12 +78,12 @@ class DeviationView(ColouredMeshView):
         view.RootNode.insertChild(self.lay, 0)
         view.RootNode.insertChild(self.rest, 0)
 
-    def panel(self, obj):
+    def panel(self, obj: DocumentObject) -> Any:
         from ..panels.deviation_panel import DeviationPanel
 
         return DeviationPanel(obj)
 
-    def finishRestoring(self):
+    def finishRestoring(self) -> None:
         if hasattr(self.view, "Lit"):  # 0.1.0 shaded the colours, which made others of them
             self.view.removeProperty("Lit")
         self._lay_property(self.view)
@@ -83,7 +91,7 @@ class DeviationView(ColouredMeshView):
         self.update_rest()
         QtCore.QTimer.singleShot(0, self._redraw)  # the simulation may come after it
 
-    def updateData(self, obj, name):
+    def updateData(self, obj: DocumentObject, name: str) -> None:
         if getattr(self, "view", None) is None:
             return
         if name == "VertexColors":
@@ -94,7 +102,7 @@ class DeviationView(ColouredMeshView):
         if name in LEGEND:
             self.update_legend()
 
-    def onChanged(self, view, name):
+    def onChanged(self, view: ViewObject, name: str) -> None:
         if getattr(self, "rest", None) is None:
             return
         super().onChanged(view, name)
@@ -105,7 +113,7 @@ class DeviationView(ColouredMeshView):
         if name in ("Visibility", "Scratches"):
             self.update_lay()
 
-    def legend_spec(self):
+    def legend_spec(self) -> Spec | None:
         obj = self.view.Object
         if not (hasattr(obj, "OutOfDate") and hasattr(obj, "Bands")) or obj.ColourLimit.Value <= 0:
             return None
@@ -121,13 +129,13 @@ class DeviationView(ColouredMeshView):
         beyond = obj.Minimum.Value < -scale[2], obj.Maximum.Value > scale[2]
         return legend.deviation(*scale, obj.OutOfDate, bands_of(obj), beyond)
 
-    def update_crisp(self):
+    def update_crisp(self) -> None:
         """Draws the colours with crisp borders, where that can be done."""
         if self.view.Visibility:
             self.crisp.update(self.view)
         self.colour()
 
-    def update_lay(self):
+    def update_lay(self) -> None:
         """Draws the direction of the scratches, where it is known."""
         self.lay.removeAllChildren()
         self.lay.whichChild = coin.SO_SWITCH_NONE
@@ -138,19 +146,19 @@ class DeviationView(ColouredMeshView):
                 self.lay.addChild(drawn)
                 self.lay.whichChild = coin.SO_SWITCH_ALL
 
-    def colour(self):
+    def colour(self) -> None:
         """Lets FreeCAD take the vertices' colours over, which takes long, where it draws them."""
         if not self.crisp.shown():
             super().colour()
 
-    def _redraw(self):
+    def _redraw(self) -> None:
         try:
             self.update_crisp()
             self.update_lay()
         except (ReferenceError, RuntimeError):
             pass  # the document is closed again
 
-    def update_rest(self):
+    def update_rest(self) -> None:
         """Draws the faces that are not ground; what is cut below them would else be hidden."""
         self.rest.removeAllChildren()
         job = self.view.Object.getParentGroup()

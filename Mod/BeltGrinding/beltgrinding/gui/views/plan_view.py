@@ -1,8 +1,11 @@
 """View provider of a plan: what stays out of tolerance, in a colour for each reason."""
 
+from __future__ import annotations
+
 import numpy as np
 from pivy import coin
 
+from ...objects.kinds import DocumentObject, ViewObject
 from ...planning.pictures import COLOURS
 from ..common.compat import translate
 from ..common.icons import icon, stale_icon
@@ -21,27 +24,27 @@ class PlanView(View):
     ICON = "BeltGrinding_Plan"
     COMMANDS = ("BeltGrinding_Simulate", "BeltGrinding_Deviation")
 
-    def attach(self, view):
+    def attach(self, view: ViewObject) -> None:
         super().attach(view)
         self.left = coin.SoSwitch()
         view.addDisplayMode(self.left, "Left")
 
-    def getDisplayModes(self, view):
+    def getDisplayModes(self, view: ViewObject) -> list[str]:
         return ["Left"]
 
-    def getDefaultDisplayMode(self):
+    def getDefaultDisplayMode(self) -> str:
         return "Left"
 
-    def getIcon(self):
+    def getIcon(self) -> str:
         stale = getattr(self, "view", None) is not None and getattr(
             self.view.Object, "OutOfDate", False
         )
         return stale_icon(self.ICON) if stale else icon(self.ICON)
 
-    def finishRestoring(self):
+    def finishRestoring(self) -> None:
         self.draw()
 
-    def updateData(self, obj, name):
+    def updateData(self, obj: DocumentObject, name: str) -> None:
         if getattr(self, "view", None) is None:
             return
         if name == "OutOfDate":
@@ -49,11 +52,11 @@ class PlanView(View):
         if name in ("OutOfDate", "Fingerprint"):
             self.draw()
 
-    def onChanged(self, view, name):
+    def onChanged(self, view: ViewObject, name: str) -> None:
         if name == "Visibility" and getattr(self, "left", None) is not None:
             self.draw()
 
-    def draw(self):
+    def draw(self) -> None:
         """Draws the places as they are; none of a plan that is out of date."""
         obj = self.view.Object
         self.left.whichChild = coin.SO_SWITCH_NONE
@@ -65,14 +68,14 @@ class PlanView(View):
         self.left.addChild(left_out.left_out(points, corners, np.array(obj.LeftStates), RGB))
         self.left.whichChild = coin.SO_SWITCH_ALL
 
-    def doubleClicked(self, view):
+    def doubleClicked(self, view: ViewObject) -> bool:
         from ..panels.plan_panel import show
 
         show(view.Object)
         return True
 
-    def setEdit(self, view, mode=0):
+    def setEdit(self, view: ViewObject, mode: int = 0) -> bool | None:
         return None
 
-    def verb(self):
+    def verb(self) -> str:
         return translate("BeltGrinding", "Show plan")

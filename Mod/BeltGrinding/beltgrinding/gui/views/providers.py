@@ -1,5 +1,10 @@
 """The view providers, by the names under which objects ask for them."""
 
+from __future__ import annotations
+
+from typing import Any
+
+import FreeCAD
 import numpy as np
 from pivy import coin
 
@@ -7,9 +12,11 @@ from ...engine import InputError
 from ...objects.deviation import Deviation
 from ...objects.ground_mesh import GroundMesh
 from ...objects.job_data import child, children
+from ...objects.kinds import DocumentObject, ViewObject
 from ...objects.robot_path import load_program
 from ..common.compat import translate
 from ..common.icons import icon, stale_icon, qicon
+from ..common.kinds import Menu
 from ..scene import left_out, path_arrows, stock_shell
 from .coloured_mesh_view import frame_selected
 from .deviation_view import DeviationView
@@ -42,14 +49,14 @@ LINE_WIDTH = 2  # pixels of a path
 class Undrawn(View):
     """An object that draws nothing. Without a display mode the tree would grey it out as hidden."""
 
-    def attach(self, view):
+    def attach(self, view: ViewObject) -> None:
         super().attach(view)
         view.addDisplayMode(coin.SoGroup(), "Default")
 
-    def getDisplayModes(self, view):
+    def getDisplayModes(self, view: ViewObject) -> list[str]:
         return ["Default"]
 
-    def getDefaultDisplayMode(self):
+    def getDefaultDisplayMode(self) -> str:
         return "Default"
 
 
@@ -69,11 +76,11 @@ class JobView(View):
         "BeltGrinding_ImportResult",
     )
 
-    def updateData(self, obj, name):
+    def updateData(self, obj: DocumentObject, name: str) -> None:
         if name in ("DesignFaces", "FlipFaces", "FlipNormals", "Group"):
             show_stock(obj)
 
-    def panel(self, obj):
+    def panel(self, obj: DocumentObject) -> Any:
         from ..panels.job_panel import JobPanel
 
         return JobPanel(obj)
@@ -84,29 +91,29 @@ class StockView(View):
 
     ICON = "BeltGrinding_Stock"
 
-    def attach(self, view):
+    def attach(self, view: ViewObject) -> None:
         super().attach(view)
         self.shell = coin.SoSwitch()
         view.addDisplayMode(self.shell, "Shell")
 
-    def getDisplayModes(self, view):
+    def getDisplayModes(self, view: ViewObject) -> list[str]:
         return ["Shell"]
 
-    def getDefaultDisplayMode(self):
+    def getDefaultDisplayMode(self) -> str:
         return "Shell"
 
-    def finishRestoring(self):
+    def finishRestoring(self) -> None:
         self.update_shell()
 
-    def updateData(self, obj, name):
+    def updateData(self, obj: DocumentObject, name: str) -> None:
         if name in ("Kind", "Allowance") and getattr(self, "view", None) is not None:
             self.update_shell()
 
-    def onChanged(self, view, name):
+    def onChanged(self, view: ViewObject, name: str) -> None:
         if name == "Visibility" and getattr(self, "shell", None) is not None:
             self.update_shell()
 
-    def update_shell(self):
+    def update_shell(self) -> None:
         """Draws the stock as it is now; nothing beside a result that is shown."""
         obj, job = self.view.Object, self.view.Object.getParentGroup()
         self.shell.whichChild = coin.SO_SWITCH_NONE
@@ -118,7 +125,7 @@ class StockView(View):
             self.shell.addChild(stock_shell.shell(job, obj.Allowance.Value))
             self.shell.whichChild = coin.SO_SWITCH_ALL
 
-    def panel(self, obj):
+    def panel(self, obj: DocumentObject) -> Any:
         from ..panels.stock_panel import StockPanel
 
         return StockPanel(obj)
@@ -128,7 +135,7 @@ class BeltMachineView(Undrawn):
     ICON = "BeltGrinding_BeltMachine"
     COMMANDS = ("BeltGrinding_Cell", "BeltGrinding_Belt", "BeltGrinding_Contact")
 
-    def panel(self, obj):
+    def panel(self, obj: DocumentObject) -> Any:
         from ..panels.belt_machine_panel import BeltMachinePanel
 
         return BeltMachinePanel(obj)
@@ -138,7 +145,7 @@ class BeltView(Undrawn):
     ICON = "BeltGrinding_Belt"
     COMMANDS = ("BeltGrinding_Simulate",)
 
-    def panel(self, obj):
+    def panel(self, obj: DocumentObject) -> Any:
         from ..panels.belt_panel import BeltPanel
 
         return BeltPanel(obj)
@@ -156,7 +163,7 @@ class RobotPathView(View):
         "BeltGrinding_Cell",
     )
 
-    def attach(self, view):
+    def attach(self, view: ViewObject) -> None:
         super().attach(view)
         self.arrows = coin.SoSwitch()
         view.RootNode.addChild(self.arrows)
@@ -165,20 +172,22 @@ class RobotPathView(View):
             view.LineWidth = LINE_WIDTH
         self.start(view.Object)
 
-    def finishRestoring(self):
+    def finishRestoring(self) -> None:
         frame_selected(self.view)
         self.draw_arrows()
 
-    def updateData(self, obj, name):
+    def updateData(self, obj: DocumentObject, name: str) -> None:
         if name == "Path" and getattr(self, "view", None) is not None:
             self.start(obj)
             self.draw_arrows()
 
-    def onChanged(self, view, name):
-        if name in ("Visibility", "NormalColor") and getattr(self, "arrows", None) is not None:
+    def onChanged(self, view: ViewObject, name: str) -> None:
+        # While a document is opened, a path of an earlier version has not all its properties yet.
+        drawn = getattr(self, "arrows", None) is not None and not FreeCAD.isRestoring()
+        if drawn and name in ("Visibility", "NormalColor"):
             self.draw_arrows()
 
-    def draw_arrows(self):
+    def draw_arrows(self) -> None:
         """Draws the arrows of the path as it is."""
         view = self.view
         self.arrows.whichChild = coin.SO_SWITCH_NONE
@@ -194,23 +203,23 @@ class RobotPathView(View):
         self.arrows.addChild(node)
         self.arrows.whichChild = coin.SO_SWITCH_ALL
 
-    def start(self, obj):
+    def start(self, obj: DocumentObject) -> None:
         """Tells the view where the path begins."""
         if obj.Path.Size and hasattr(self.view, "StartPosition"):
             self.view.StartPosition = obj.Path.Commands[0].Placement.Base
 
-    def panel(self, obj):
+    def panel(self, obj: DocumentObject) -> Any:
         from ..panels.program_panel import ProgramPanel
 
         return ProgramPanel(obj)
 
-    def own_entries(self, obj, menu):
+    def own_entries(self, obj: DocumentObject, menu: Menu) -> None:
         if obj.Source:
             text = translate("BeltGrinding", "Read the file again")
             menu.addAction(qicon("BeltGrinding_ReadAgain"), text, lambda: read_again(obj))
 
 
-def read_again(obj):
+def read_again(obj: DocumentObject) -> None:
     """Reads a path's file again, as one undo step."""
     from ..common.transaction import transaction
 
@@ -224,12 +233,12 @@ class RasterPathView(RobotPathView):
 
     ICON = "BeltGrinding_RasterPath"
 
-    def attach(self, view):
+    def attach(self, view: ViewObject) -> None:
         self.left = coin.SoSwitch()
         view.RootNode.addChild(self.left)
         super().attach(view)
 
-    def draw_arrows(self):
+    def draw_arrows(self) -> None:
         super().draw_arrows()
         self.left.whichChild = coin.SO_SWITCH_NONE
         self.left.removeAllChildren()
@@ -241,12 +250,12 @@ class RasterPathView(RobotPathView):
         self.left.addChild(left_out.left_out(points, corners, np.array(obj.LeftStates)))
         self.left.whichChild = coin.SO_SWITCH_ALL
 
-    def updateData(self, obj, name):
+    def updateData(self, obj: DocumentObject, name: str) -> None:
         super().updateData(obj, name)
         if name == "LeftStates" and getattr(self, "view", None) is not None:
             self.draw_arrows()
 
-    def panel(self, obj):
+    def panel(self, obj: DocumentObject) -> Any:
         from ..panels.raster_panel import RasterPanel
 
         return RasterPanel(obj)
@@ -258,24 +267,24 @@ class VerdictView(Undrawn):
     ICON = "BeltGrinding_Verdict"
     COMMANDS = ("BeltGrinding_Zones", "BeltGrinding_Deviation")
 
-    def getIcon(self):
+    def getIcon(self) -> str:
         stale = getattr(self, "view", None) is not None and self.view.Object.OutOfDate
         return stale_icon(self.ICON) if stale else icon(self.ICON)
 
-    def updateData(self, obj, name):
+    def updateData(self, obj: DocumentObject, name: str) -> None:
         if name == "OutOfDate" and getattr(self, "view", None) is not None:
             self.view.signalChangeIcon()
 
-    def doubleClicked(self, view):
+    def doubleClicked(self, view: ViewObject) -> bool:
         from ..docks.verdict_dock import VerdictDock
 
         VerdictDock.open(view.Object)
         return True
 
-    def setEdit(self, view, mode=0):
+    def setEdit(self, view: ViewObject, mode: int = 0) -> bool | None:
         return None
 
-    def verb(self):
+    def verb(self) -> str:
         return translate("BeltGrinding", "Show verdict")
 
 
@@ -285,21 +294,21 @@ class SimulationView(Undrawn):
     ICON = "BeltGrinding_Simulate"
     COMMANDS = ("BeltGrinding_Simulate", "BeltGrinding_Deviation", "BeltGrinding_ImportResult")
 
-    def getIcon(self):
+    def getIcon(self) -> str:
         stale = getattr(self, "view", None) is not None and self.view.Object.OutOfDate
         return stale_icon(self.ICON) if stale else icon(self.ICON)
 
-    def updateData(self, obj, name):
+    def updateData(self, obj: DocumentObject, name: str) -> None:
         if name == "OutOfDate" and getattr(self, "view", None) is not None:
             self.view.signalChangeIcon()
 
-    def doubleClicked(self, view):
+    def doubleClicked(self, view: ViewObject) -> bool:
         from ..panels.simulation_panel import show_result
 
         show_result(view.Object)
         return True
 
-    def verb(self):
+    def verb(self) -> str:
         return translate("BeltGrinding", "Show result")
 
 
@@ -309,24 +318,24 @@ class StudyView(Undrawn):
     ICON = "BeltGrinding_Study"
     COMMANDS = ("BeltGrinding_Study", "BeltGrinding_Simulate")
 
-    def getIcon(self):
+    def getIcon(self) -> str:
         stale = getattr(self, "view", None) is not None and getattr(
             self.view.Object, "OutOfDate", False
         )
         return stale_icon(self.ICON) if stale else icon(self.ICON)
 
-    def updateData(self, obj, name):
+    def updateData(self, obj: DocumentObject, name: str) -> None:
         if name == "OutOfDate" and getattr(self, "view", None) is not None:
             self.view.signalChangeIcon()
 
-    def doubleClicked(self, view):
+    def doubleClicked(self, view: ViewObject) -> bool:
         from ..docks.study_dock import show
 
         show(view.Object)
         return True
 
-    def setEdit(self, view, mode=0):
+    def setEdit(self, view: ViewObject, mode: int = 0) -> bool | None:
         return None
 
-    def verb(self):
+    def verb(self) -> str:
         return translate("BeltGrinding", "Show study")

@@ -1,9 +1,13 @@
 """View provider of a cross-section: its line over the ground surface."""
 
+from __future__ import annotations
+
 from pivy import coin
 
+from ...objects.kinds import DocumentObject, ViewObject
 from ..common.compat import translate
 from ..common.icons import qicon
+from ..common.kinds import Menu
 from ..scene.shapes3d import separator, unpickable
 from .view import View
 
@@ -17,7 +21,7 @@ class SectionView(View):
     ICON = "BeltGrinding_Section"
     COMMANDS = ("BeltGrinding_Section", "BeltGrinding_Simulate")
 
-    def attach(self, view):
+    def attach(self, view: ViewObject) -> None:
         super().attach(view)
         style, light, colour = coin.SoDrawStyle(), coin.SoLightModel(), coin.SoBaseColor()
         style.lineWidth = WIDTH
@@ -30,17 +34,17 @@ class SectionView(View):
         view.addDisplayMode(root, "Line")
         self.draw(view.Object)
 
-    def getDisplayModes(self, view):
+    def getDisplayModes(self, view: ViewObject) -> list[str]:
         return ["Line"]
 
-    def getDefaultDisplayMode(self):
+    def getDefaultDisplayMode(self) -> str:
         return "Line"
 
-    def updateData(self, obj, name):
+    def updateData(self, obj: DocumentObject, name: str) -> None:
         if name == "Line" and getattr(self, "view", None) is not None:
             self.draw(obj)
 
-    def draw(self, obj):
+    def draw(self, obj: DocumentObject) -> None:
         """Takes the object's line over."""
         if not hasattr(obj, "LineCounts"):
             return
@@ -51,16 +55,16 @@ class SectionView(View):
             self.points.point.setValues(0, len(points), points)
             self.lines.numVertices.setValues(0, len(counts), counts)
 
-    def doubleClicked(self, view):
+    def doubleClicked(self, view: ViewObject) -> bool:
         from ..docks.section_dock import SectionDock
 
         SectionDock.open(view.Object)
         return True
 
-    def verb(self):
+    def verb(self) -> str:
         return translate("BeltGrinding", "Show the plot")
 
-    def own_entries(self, obj, menu):
+    def own_entries(self, obj: DocumentObject, menu: Menu) -> None:
         for kind in ("CSV", "SVG"):
             text = translate("BeltGrinding", "Export {}").format(f"{kind}...")
             menu.addAction(
@@ -69,11 +73,11 @@ class SectionView(View):
                 lambda kind=kind.lower(): self.export(obj, kind),
             )
 
-    def export(self, obj, kind):
+    def export(self, obj: DocumentObject, kind: str) -> None:
         """Asks for a file and writes the section as "csv" or "svg"; its dock says what came of it."""
         from ..docks.section_dock import SectionDock
 
         SectionDock.open(obj).export(kind)
 
-    def setEdit(self, view, mode=0):
+    def setEdit(self, view: ViewObject, mode: int = 0) -> bool | None:
         return None

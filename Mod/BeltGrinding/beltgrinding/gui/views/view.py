@@ -1,15 +1,22 @@
 """Base of the view providers: the icon in the tree, and the panel that a double click opens."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
 import FreeCADGui as Gui
 
+from ...objects.kinds import DocumentObject, ViewObject
 from ...objects.proxy import Stateless
 from ..common import command_registry
 from ..common.compat import translate
 from ..common.icons import icon, qicon
+from ..common.kinds import Menu
 from ..panels.panel import edit
 
 
-def add_commands(menu, names):
+def add_commands(menu: Menu, names: Iterable[str]) -> None:
     """Adds commands of the workbench to a menu. They work on the job of what is selected, which is
     what the menu was called on.
     """
@@ -23,25 +30,25 @@ class View(Stateless):
     """
 
     ICON = ""
-    COMMANDS = ()
+    COMMANDS: tuple[str, ...] = ()
 
-    def __init__(self, view):
+    def __init__(self, view: ViewObject) -> None:
         view.Proxy = self
 
-    def attach(self, view):
+    def attach(self, view: ViewObject) -> None:
         self.view = view
 
-    def getIcon(self):
+    def getIcon(self) -> str:
         return icon(self.ICON)
 
-    def panel(self, obj):
+    def panel(self, obj: DocumentObject) -> Any:
         raise NotImplementedError
 
-    def doubleClicked(self, view):
+    def doubleClicked(self, view: ViewObject) -> bool:
         edit(view.Object)
         return True
 
-    def setupContextMenu(self, view, menu):
+    def setupContextMenu(self, view: ViewObject, menu: Menu) -> None:
         """The object's own entries in the tree's context menu."""
         menu.addAction(qicon(self.ICON), self.verb(), lambda: self.doubleClicked(view))
         self.own_entries(view.Object, menu)
@@ -49,20 +56,20 @@ class View(Stateless):
             menu.addSeparator()
             add_commands(menu, self.COMMANDS)
 
-    def verb(self):
+    def verb(self) -> str:
         """What a double click does."""
         return translate("BeltGrinding", "Edit...")
 
-    def own_entries(self, obj, menu):
+    def own_entries(self, obj: DocumentObject, menu: Menu) -> None:
         """Adds what only this kind of object can do."""
 
-    def setEdit(self, view, mode=0):
+    def setEdit(self, view: ViewObject, mode: int = 0) -> bool | None:
         if mode != 0:
             return None
         Gui.Control.showDialog(self.panel(view.Object))
         return True
 
-    def unsetEdit(self, view, mode=0):
+    def unsetEdit(self, view: ViewObject, mode: int = 0) -> bool | None:
         if mode != 0:
             return None
         Gui.Control.closeDialog()

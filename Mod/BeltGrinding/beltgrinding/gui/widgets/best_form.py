@@ -1,6 +1,11 @@
 """What is looked for among a study's runs: a figure that is to be least or greatest, and limits of others."""
 
+from __future__ import annotations
+
+from typing import Any
+
 from ..common.compat import QtGui, translate
+from ..common.kinds import Json, Texts
 from .limit_rows import LimitRows
 from .rows import choose
 from .steady import steady
@@ -10,7 +15,7 @@ class BestForm(QtGui.QWidget):
     """``wanted()`` gives ``best`` of a study's answers, None where nothing is looked for; ``changed()`` tells. ``figures``:
     {name: text}."""
 
-    def __init__(self, best, figures):
+    def __init__(self, best: Json | None, figures: Texts) -> None:
         super().__init__()
         self.changed = lambda: None
         best = best or {}
@@ -50,7 +55,7 @@ class BestForm(QtGui.QWidget):
         for box in (self.passing, self.surface):
             box.toggled.connect(lambda _: self.changed())
 
-    def wanted(self):
+    def wanted(self) -> dict[str, Any] | None:
         """Raises InputError for a limit that cannot be."""
         limits, figure = self.limits.values(), self.figure.currentData()
         if figure is None:
@@ -64,7 +69,7 @@ class BestForm(QtGui.QWidget):
             "surface": self.surface.isChecked(),
         }
 
-    def summary(self):
+    def summary(self) -> str:
         """What is looked for, in a line."""
         if self.figure.currentData() is None:
             return ""

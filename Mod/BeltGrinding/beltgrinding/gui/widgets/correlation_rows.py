@@ -1,14 +1,20 @@
 """Which of what varies in a study goes along with what: pairs, each with a coefficient."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
 from ...engine import InputError
 from ..common.compat import QtGui, translate
+from ..common.kinds import Json
 from .rows import Row, Rows, choose, number, shown
 
 
 class CorrelationRows(Rows):
     """``values()`` gives the study's ``correlations``; ``set_names`` tells it what varies now."""
 
-    def __init__(self, pairs, names):
+    def __init__(self, pairs: Iterable[Json], names: Sequence[str]) -> None:
         """``pairs``: a study's ``correlations``; ``names``: of what varies, in order."""
         super().__init__("correlated", translate("BeltGrinding", "Add pair"))
         self.names = list(names)
@@ -16,7 +22,7 @@ class CorrelationRows(Rows):
             self.add(_Pair(pair, self.names))
         self._enable()
 
-    def added(self):
+    def added(self) -> None:
         """A pair that is not there yet, without a correlation."""
         taken = {frozenset(row.names()) for row in self.rows}
         free = (
@@ -29,7 +35,7 @@ class CorrelationRows(Rows):
         self.add(_Pair({"between": list(first), "coefficient": 0.0}, self.names))
         self.changed()
 
-    def set_names(self, names):
+    def set_names(self, names: Sequence[str]) -> None:
         """What varies now. A pair of what does not vary any more stays, and is told as wrong."""
         if list(names) == self.names:
             return
@@ -38,10 +44,10 @@ class CorrelationRows(Rows):
             row.offer(self.names)
         self._enable()
 
-    def _enable(self):
+    def _enable(self) -> None:
         self.button.setEnabled(len(self.names) > 1)
 
-    def summary(self):
+    def summary(self) -> str:
         """How many pairs there are."""
         return str(len(self.rows) or "")
 
@@ -49,9 +55,9 @@ class CorrelationRows(Rows):
 class _Pair(Row):
     """Two names, one above the other, and their coefficient."""
 
-    def __init__(self, pair, names):
+    def __init__(self, pair: Json, names: Sequence[str]) -> None:
         super().__init__(translate("BeltGrinding", "They are independent"))
-        self.offered = {}
+        self.offered: dict[str, str] = {}
         self.first, self.second = (self.choices({}, name) for name in pair["between"])
         self.offer(names)
         self.coefficient = self.entry(shown(pair["coefficient"]))
@@ -69,17 +75,17 @@ class _Pair(Row):
         self.grid.addWidget(self.coefficient, 1, 1, 1, 2)
         self.grid.setColumnStretch(0, 1)
 
-    def offer(self, names):
+    def offer(self, names: Sequence[str]) -> None:
         """The names that may be chosen."""
         self.offered = {name: name for name in names}
         for box in (self.first, self.second):
             choose(box, self.offered, box.currentData())
 
-    def names(self):
+    def names(self) -> list[str]:
         """The two that are chosen."""
         return [self.first.currentData(), self.second.currentData()]
 
-    def number(self, k):
+    def number(self, k: int) -> None:
         for widget, name in (
             (self.first, "correlatedFirst"),
             (self.second, "correlatedSecond"),
@@ -88,7 +94,7 @@ class _Pair(Row):
         ):
             widget.setObjectName(f"{name}{k}")
 
-    def value(self):
+    def value(self) -> dict[str, Any]:
         """An entry of a study's ``correlations``."""
         first, second = self.names()
         for box, name in ((self.first, first), (self.second, second)):

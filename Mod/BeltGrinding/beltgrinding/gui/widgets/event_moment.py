@@ -1,16 +1,20 @@
 """The moment of an event in the 3D view: the cell there and then, a mark on the part, the camera."""
 
+from __future__ import annotations
+
 import FreeCADGui as Gui
 import numpy as np
 from pivy import coin
 
-from ...job.bodies import PART, STOCK
+from ...geometry.body_names import PART, STOCK
 from ...objects import job_data, job_inputs
 from ...objects.belt_machine import BeltMachine, half_size
+from ...objects.kinds import DocumentObject, Event, Point
 from ...objects.robot_path import RobotPath
 from ..common import event_texts
 from ..common.compat import QtGui
 from ..common.event_texts import COLOURS
+from ..common.kinds import Array, Colour, Node, View3D, Widget
 from ..scene.cell_view import CellView
 from ..scene.labels import label
 from ..scene.sight import Sight
@@ -21,21 +25,21 @@ LEAST_SIZE, WHEELS = 20.0, 3.2  # mm; radii of the wheel that the view shows
 class EventMoment:
     """Shows events of a job's simulation; ``close`` leaves the 3D view as it was."""
 
-    def __init__(self, job):
+    def __init__(self, job: DocumentObject) -> None:
         self.document, self.name = job.Document, job.Name
         self.cell = self.mark = None
         self.tinted = []  # views of cells
         self.paths = None
         self.sight = Sight(job)
 
-    def job(self):
+    def job(self) -> DocumentObject | None:
         """The job, or None if it or its document is no longer there."""
         try:
             return self.document.getObject(self.name)
         except ReferenceError:
             return None
 
-    def show(self, event):
+    def show(self, event: Event) -> None:
         """Shows the moment at which an event was worst. Raises InputError if the job has changed so
         that there is none."""
         job = self.job()
@@ -64,29 +68,29 @@ class EventMoment:
         radius = half_size(job_data.child(job, BeltMachine))
         self.sight.at_contact(cell, point, max(LEAST_SIZE, WHEELS * radius))
 
-    def _own_cell(self, job):
+    def _own_cell(self, job: DocumentObject) -> CellView:
         if self.cell is None:
             self.cell = CellView(job.Document, job_data.child(job, BeltMachine))
             program = job_data.children(job, RobotPath)[0]
             self.cell.set_path(program.Proxy.arrays(program)["frames"])
         return self.cell
 
-    def _drop_cell(self):
+    def _drop_cell(self) -> None:
         if self.cell is not None:
             self.cell.close()
             self.cell = None
 
-    def _views(self):
+    def _views(self) -> list[View3D]:
         return Gui.getDocument(self.document.Name).mdiViewsOfType("Gui::View3DInventor")
 
-    def _mark(self, event, point):
+    def _mark(self, event: Event, point: Array) -> None:
         self._unmark()
         node = pin(point, COLOURS[event["severity"]], event_texts.title(event))
         self.mark = node, [view.getSceneGraph() for view in self._views()]
         for scene in self.mark[1]:
             scene.addChild(node)
 
-    def _unmark(self):
+    def _unmark(self) -> None:
         if self.mark is not None:
             node, scenes = self.mark
             for scene in scenes:
@@ -94,19 +98,19 @@ class EventMoment:
                     scene.removeChild(node)
             self.mark = None
 
-    def untint(self):
+    def untint(self) -> None:
         """Bodies get their own colours back."""
         for cell in self.tinted:
             cell.tint(())
         self.tinted = []
 
-    def forget(self):
+    def forget(self) -> None:
         """Takes everything out of the 3D views, and the paths and the part anew: they may be others."""
         self.close()
         self.paths = None
         self.sight.part = None
 
-    def close(self):
+    def close(self) -> None:
         """Takes everything out of the 3D views."""
         self.sight.clear()
         self.untint()
@@ -114,7 +118,7 @@ class EventMoment:
         self._drop_cell()
 
 
-def playback(job):
+def playback(job: DocumentObject) -> Widget | None:
     """The playback dock that shows a recording of the job; None if there is none."""
     for dock in Gui.getMainWindow().findChildren(QtGui.QDockWidget, "BeltGrinding_PlaybackDock"):
         if dock.isVisible() and dock.scene is not None and dock.job() is job:
@@ -122,7 +126,7 @@ def playback(job):
     return None
 
 
-def pin(point, colour, text):
+def pin(point: Point, colour: Colour, text: str) -> Node:
     """A dot with a text at ``point`` (3,), over everything, not picked, not counted by fitAll."""
     root = coin.SoType.fromName("SoSkipBoundingGroup").createInstance() or coin.SoSeparator()
     top = coin.SoAnnotation()

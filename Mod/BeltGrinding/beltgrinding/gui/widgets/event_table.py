@@ -1,9 +1,16 @@
 """The table of a simulation's events: filtered by kind and severity, the chosen one in full below."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
 from ...cell.events import SEVERITIES
+from ...objects.kinds import Event
 from ..common import event_texts
 from ..common.compat import QtCore, QtGui, translate
 from ..common.event_texts import COLOURS
+from ..common.kinds import FaceName, Icon, Layout, QtEvent, TableItem, Widget
 from .steady import steady
 
 SHOWN = 5000  # rows; a table of more is no help
@@ -20,7 +27,7 @@ class EventTable(QtGui.QWidget):
     ``face_name(number)``: how a face is called, its number from 1.
     """
 
-    def __init__(self, face_name):
+    def __init__(self, face_name: FaceName) -> None:
         super().__init__()
         self.face_name = face_name
         self.chosen = lambda event: None
@@ -66,7 +73,7 @@ class EventTable(QtGui.QWidget):
         self.details.setMinimumHeight(DETAILS * self.details.fontMetrics().lineSpacing())
         body.addWidget(self.details)
 
-    def _choice(self, name, row, stretch):
+    def _choice(self, name: str, row: Layout, stretch: int) -> Widget:
         choice = steady(QtGui.QComboBox())
         choice.setObjectName(name)
         choice.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
@@ -76,7 +83,7 @@ class EventTable(QtGui.QWidget):
         row.addWidget(choice, stretch)
         return choice
 
-    def show_events(self, events):
+    def show_events(self, events: Sequence[Event]) -> None:
         """Shows a list of events, as a Simulation has them."""
         self.events = events
         kinds, severities = {}, {}
@@ -98,14 +105,14 @@ class EventTable(QtGui.QWidget):
         self._offer(self.severity, rows)
         self._fill()
 
-    def _offer(self, choice, rows):
+    def _offer(self, choice: Widget, rows: Any) -> None:
         choice.blockSignals(True)
         choice.clear()
         for data, text, severity in rows:
             choice.addItem(severity_icon(severity) if severity else QtGui.QIcon(), text, data)
         choice.blockSignals(False)
 
-    def _fill(self, *_):
+    def _fill(self, *_: object) -> None:
         kind, severity = self.kind.currentData(), self.severity.currentData()
         self.rows = [
             event
@@ -137,11 +144,11 @@ class EventTable(QtGui.QWidget):
         self._arrange()
         table.blockSignals(False)
 
-    def resizeEvent(self, event):
+    def resizeEvent(self, event: QtEvent) -> None:
         super().resizeEvent(event)
         self._arrange()
 
-    def _arrange(self):
+    def _arrange(self) -> None:
         """Hides what says nothing, and in a narrow panel what the text below says as well."""
         one_kind, wide = bool(self.kind.currentData()), self.width() >= WIDE
         table, header = self.table, self.table.horizontalHeader()
@@ -156,12 +163,12 @@ class EventTable(QtGui.QWidget):
             header.setSectionResizeMode(2, QtGui.QHeaderView.Interactive)
             table.setColumnWidth(2, min(table.sizeHintForColumn(2), self.width() // 3))
 
-    def _clicked(self, item):
+    def _clicked(self, item: TableItem) -> None:
         if self.details.text() and item.row() == self.table.currentRow() and not self.fresh:
             self.chosen(self.rows[item.row()])
         self.fresh = False
 
-    def _select(self):
+    def _select(self) -> None:
         rows = self.table.selectionModel().selectedRows()
         if not rows:
             return
@@ -171,7 +178,7 @@ class EventTable(QtGui.QWidget):
         self.chosen(event)
 
 
-def details(event):
+def details(event: Event) -> str:
     """An event in full, as rich text."""
     colour = COLOURS[event["severity"]]
     names = event_texts.severities()
@@ -196,16 +203,16 @@ def details(event):
     return "<br>".join([*lines, f"<span style='color:gray'>{_escape(when)}</span>"])
 
 
-def _sentence(text, begin=True):
+def _sentence(text: str, begin: bool = True) -> str:
     text = text[:1].upper() + text[1:] if begin else text
     return text if text.endswith(".") else text + "."
 
 
-def _escape(text):
+def _escape(text: str) -> str:
     return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
 
 
-def severity_icon(severity):
+def severity_icon(severity: str) -> Icon:
     """A sign that tells severities apart by form as well as by colour."""
     picture = QtGui.QPixmap(2 * ICON, 2 * ICON)
     picture.fill(QtCore.Qt.transparent)

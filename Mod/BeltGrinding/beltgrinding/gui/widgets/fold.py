@@ -1,12 +1,17 @@
 """A part of a panel that folds away under its title; folded, the title tells what is in it."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
+
 from ..common.compat import QtCore, QtGui
+from ..common.kinds import Layout, Widget
 
 
 NARROW = (4, 9, 4, 4)  # pixels; FreeCAD's panels have margins of their own
 
 
-def slim(form):
+def slim(form: Layout) -> None:
     """Takes the margins of a panel's boxes in: the dock, as FreeCAD opens it on a small screen, is narrow."""
     for box in (form, *form.findChildren(QtGui.QGroupBox)):
         box.layout().setContentsMargins(*NARROW)
@@ -16,7 +21,14 @@ class Fold(QtGui.QWidget):
     """``content``: the widget that is folded. ``summary()``: one line of what it holds, told beside the
     title while it is folded."""
 
-    def __init__(self, name, title, content, summary=lambda: "", folded=False):
+    def __init__(
+        self,
+        name: str,
+        title: str,
+        content: Widget | Layout,
+        summary: Callable[[], str] = lambda: "",
+        folded: bool = False,
+    ) -> None:
         super().__init__()
         self.title, self.summary, self.content = title, summary, content
         layout = QtGui.QVBoxLayout(self)
@@ -35,7 +47,7 @@ class Fold(QtGui.QWidget):
         layout.addWidget(content)
         self.fold(folded)
 
-    def fold(self, folded):
+    def fold(self, folded: bool) -> None:
         """Folds it away, or unfolds it."""
         self.content.setVisible(not folded)
         self.head.setArrowType(QtCore.Qt.RightArrow if folded else QtCore.Qt.DownArrow)

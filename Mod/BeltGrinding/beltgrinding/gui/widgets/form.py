@@ -1,14 +1,20 @@
 """A form whose fields are bound to an object's properties, with FreeCAD's unit entry."""
 
+from __future__ import annotations
+
 import gc
 import math
+from collections.abc import Collection, Sequence
+from typing import Any
 
 import FreeCADGui as Gui
 from FreeCAD import Placement, Rotation, Units, Vector
 
 from ...engine import InputError
+from ...objects.kinds import DocumentObject, Point
 from ...objects.properties import limits
 from ..common.compat import QtCore, QtGui, translate
+from ..common.kinds import Changed, Quantity, Texts, Widget
 from . import quantity_entry
 from .quantity_entry import QuantityEntry
 from .steady import steady
@@ -35,7 +41,7 @@ NOT_NEGATIVE = {
 }
 
 
-def quantity_field(quantity, symbol):
+def quantity_field(quantity: Quantity, symbol: str) -> Widget:
     """An entry for a number with its unit, shown in ``symbol``'s; its property rawValue is in FreeCAD's own unit.
     FreeCAD's entry where its unit system is not metric."""
     if quantity_entry.metric():
@@ -47,7 +53,7 @@ def quantity_field(quantity, symbol):
     return widget
 
 
-def _spin_box():
+def _spin_box() -> Widget:
     for _ in range(ATTEMPTS):
         widget = Gui.UiLoader().createWidget("Gui::QuantitySpinBox")
         try:
@@ -59,7 +65,7 @@ def _spin_box():
     raise RuntimeError("FreeCAD's entry for quantities cannot be made")
 
 
-def watch_quantity(widget, changed):
+def watch_quantity(widget: Widget, changed: Changed) -> None:
     """Calls ``changed()`` when the value of a ``quantity_field`` is another one."""
     if isinstance(widget, QuantityEntry):
         widget.valueChanged.connect(lambda _: changed())
@@ -67,7 +73,7 @@ def watch_quantity(widget, changed):
         widget.connect(widget, QtCore.SIGNAL("valueChanged(double)"), lambda _: changed())
 
 
-def show_quantity(widget, quantity):
+def show_quantity(widget: Widget, quantity: Quantity) -> None:
     """Puts a quantity into a ``quantity_field``."""
     if isinstance(widget, QuantityEntry):
         return widget.show_value(Units.Quantity(quantity).Value)
@@ -77,7 +83,7 @@ def show_quantity(widget, quantity):
     widget.setProperty("value", quantity)
 
 
-def number(text):
+def number(text: str) -> float | None:
     """The number in a text, with a point or, as many languages have it, a comma; or None."""
     try:
         value = float(text.strip().replace(",", "."))
@@ -92,7 +98,7 @@ SIGNED = "signed"
 class Form(QtGui.QGroupBox):
     """Rows of fields; every change goes to the property at once."""
 
-    def __init__(self, obj, title):
+    def __init__(self, obj: DocumentObject, title: str) -> None:
         super().__init__(title)
         self.obj = obj
         self.rows = {}  # property name: (label, widget)
@@ -104,7 +110,7 @@ class Form(QtGui.QGroupBox):
         self.layout_.setFieldGrowthPolicy(QtGui.QFormLayout.AllNonFixedFieldsGrow)
         self.layout_.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)
 
-    def add(self, name, text, choices=None, unit=""):
+    def add(self, name: str, text: str, choices: Any = None, unit: str = "") -> Widget:
         """A row for the property ``name``. choices: texts of an enumeration's values, or the objects
         that a link can take, or SIGNED for a number that may be negative; unit: shown behind a plain
         number."""
@@ -142,14 +148,14 @@ class Form(QtGui.QGroupBox):
         self._watch(name, widget)
         return widget
 
-    def _watch(self, name, widget):
+    def _watch(self, name: str, widget: Widget) -> None:
         """Checks a number as it is typed."""
         line = widget if isinstance(widget, QtGui.QLineEdit) else widget.findChild(QtGui.QLineEdit)
         kind = self.obj.getTypeIdOfProperty(name)
         if line is not None and (kind in QUANTITIES or kind in NUMBERS):
             line.textChanged.connect(lambda text: self._check_typed(name, text))
 
-    def _mistake(self, name, text):
+    def _mistake(self, name: str, text: str) -> str:
         """What is wrong with a number as it was typed; '' if nothing is."""
         unit = getattr(getattr(self.obj, name), "Unit", None)
         if unit is None:
@@ -177,9 +183,9 @@ class Form(QtGui.QGroupBox):
         bare = limits(self.obj, name)[0] == 0.0 and quantity.Value <= 0.0
         return self._out_of_limits(name, quantity.Value) if bare else ""
 
-    def _out_of_limits(self, name, value):
+    def _out_of_limits(self, name: str, value: float) -> str:
         low, high, open_low = limits(self.obj, name)
-        if low is None and name in self.unsigned:
+        if name in self.unsigned and (low is None or low < 0.0):
             low = 0.0
         if low is not None and (value < low or open_low and value == low):
             if open_low:
@@ -191,20 +197,20 @@ class Form(QtGui.QGroupBox):
             return translate("BeltGrinding", "Must be at most {}").format(self._shown(name, high))
         return ""
 
-    def _shown(self, name, value):
+    def _shown(self, name: str, value: float) -> str:
         unit = getattr(getattr(self.obj, name), "Unit", None)
         if unit is not None and isinstance(self.rows[name][1], QuantityEntry):
             return quantity_entry.written(value, quantity_entry.symbol_of(self.obj, name))
         return f"{value:g}" if unit is None else Units.Quantity(value, unit).UserString
 
-    def mark(self, name, mistake):
+    def mark(self, name: str, mistake: str) -> None:
         """Frames a field in red and says in its tooltip what is wrong; '' takes that back. What is
         wrong with the number as it was typed is marked anyway.
         """
         self.told[name] = mistake
         self._show_mistake(name)
 
-    def _show_mistake(self, name):
+    def _show_mistake(self, name: str) -> None:
         mistake = self.typed.get(name) or self.told.get(name) or ""
         if self.mistakes.get(name, "") == mistake:
             return
@@ -215,15 +221,15 @@ class Form(QtGui.QGroupBox):
         for shown in (widget, *widget.findChildren(QtGui.QLineEdit)):
             shown.setToolTip(mistake or self.obj.getDocumentationOfProperty(name))
 
-    def _refuse(self, name, mistake):
+    def _refuse(self, name: str, mistake: str) -> None:
         """Marks what was typed as wrong, until something else is typed."""
         self.typed[name] = mistake
         self._show_mistake(name)
 
-    def _check_typed(self, name, text):
+    def _check_typed(self, name: str, text: str) -> None:
         self._refuse(name, self._mistake(name, text))
 
-    def check(self):
+    def check(self) -> None:
         """Raises InputError for the first visible field with a mistake."""
         for name, mistake in self.mistakes.items():
             label, widget = self.rows[name]
@@ -232,13 +238,13 @@ class Form(QtGui.QGroupBox):
                     "gui.field", "{label}: {mistake}", label=label.text(), mistake=mistake, key=name
                 )
 
-    def show_rows(self, names):
+    def show_rows(self, names: Collection[str]) -> None:
         """Shows the rows in ``names`` and hides the others."""
         for name, row in self.rows.items():
             for widget in row:
                 widget.setVisible(name in names)
 
-    def refresh(self, name):
+    def refresh(self, name: str) -> None:
         """Shows a value that was set from elsewhere."""
         widget, value = self.rows[name][1], getattr(self.obj, name)
         if isinstance(widget, QtGui.QComboBox):
@@ -252,12 +258,12 @@ class Form(QtGui.QGroupBox):
         else:
             widget.setText(f"{value:g}")
 
-    def _set(self, name, value):
+    def _set(self, name: str, value: Any) -> None:
         if getattr(self.obj, name) != value:
             setattr(self.obj, name, value)
             self.changed()
 
-    def _quantity(self, name, kind):
+    def _quantity(self, name: str, kind: str) -> Widget:
         value = getattr(self.obj, name)
         widget = quantity_field(value, quantity_entry.symbol_of(self.obj, name))
         if isinstance(widget, QuantityEntry):
@@ -270,20 +276,20 @@ class Form(QtGui.QGroupBox):
                 widget.setProperty("minimum", 0.0)
             Gui.ExpressionBinding(widget).bind(self.obj, name)
 
-        def changed():
+        def changed() -> None:
             raw = float(widget.property("rawValue"))
             self._set(name, Units.Quantity(raw, value.Unit))
 
         watch_quantity(widget, changed)
         return widget
 
-    def _number(self, name, signed=False):
+    def _number(self, name: str, signed: bool = False) -> Widget:
         widget = QtGui.QLineEdit(f"{getattr(self.obj, name):g}")
         if not signed:
             self.unsigned.add(name)
         widget.setCursorPosition(0)  # else a narrow panel shows the last digits only
 
-        def changed(text):
+        def changed(text: str) -> None:
             value = number(text)
             if value is not None and not self._out_of_limits(name, value):
                 self._set(name, value)
@@ -291,7 +297,7 @@ class Form(QtGui.QGroupBox):
         widget.textChanged.connect(changed)
         return widget
 
-    def _enumeration(self, name, texts):
+    def _enumeration(self, name: str, texts: Texts) -> Widget:
         widget = steady(QtGui.QComboBox())
         # A long choice must not make the panel wider than the view that holds it.
         widget.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
@@ -303,7 +309,7 @@ class Form(QtGui.QGroupBox):
         widget.currentIndexChanged.connect(lambda i: self._set(name, values[i]))
         return widget
 
-    def _link(self, name, objects):
+    def _link(self, name: str, objects: Sequence[DocumentObject]) -> Widget:
         widget = steady(QtGui.QComboBox())
         choices = [None, *objects]
         for one in choices:
@@ -313,7 +319,7 @@ class Form(QtGui.QGroupBox):
         widget.currentIndexChanged.connect(lambda i: self._set(name, choices[i]))
         return widget
 
-    def _file(self, name, pattern):
+    def _file(self, name: str, pattern: str) -> Widget:
         widget = Gui.UiLoader().createWidget("Gui::FileChooser")
         widget.setProperty("filter", pattern)
         widget.setProperty("fileName", getattr(self.obj, name))
@@ -329,7 +335,7 @@ class FrameField(QtGui.QWidget):
     """X, Y, Z and A, B, C (KUKA's: about z, y, x) of a frame, one below the other: side by side, a panel as
     FreeCAD opens it shows none of them whole."""
 
-    def __init__(self, placement, changed):
+    def __init__(self, placement: Placement, changed: Changed) -> None:
         super().__init__()
         grid = QtGui.QGridLayout(self)
         grid.setContentsMargins(0, 0, 0, 0)
@@ -349,7 +355,7 @@ class FrameField(QtGui.QWidget):
             self.fields.append(field)
         self.notify = changed
 
-    def show_placement(self, placement):
+    def show_placement(self, placement: Placement) -> None:
         """Shows one that was set from elsewhere, and tells nobody."""
         notify, self.notify = self.notify, lambda _: None
         for i, (field, value) in enumerate(
@@ -358,7 +364,7 @@ class FrameField(QtGui.QWidget):
             show_quantity(field, Units.Quantity(value, Units.Length if i < 3 else Units.Angle))
         self.notify = notify
 
-    def _changed(self):
+    def _changed(self) -> None:
         x, y, z, a, b, c = (float(field.property("rawValue")) for field in self.fields)
         self.notify(Placement(Vector(x, y, z), Rotation(a, b, c)))
 
@@ -367,7 +373,7 @@ class DirectionField(QtGui.QWidget):
     """x, y, z of a direction side by side, plain numbers; ``changed(vector)`` where all are numbers and it
     is not zero."""
 
-    def __init__(self, vector, changed):
+    def __init__(self, vector: Point, changed: Changed) -> None:
         super().__init__()
         row = QtGui.QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
@@ -383,7 +389,7 @@ class DirectionField(QtGui.QWidget):
             self.fields.append(field)
         self.notify = changed
 
-    def _changed(self):
+    def _changed(self) -> None:
         values = [number(field.text()) for field in self.fields]
         for field, value in zip(self.fields, values):
             field.setStyleSheet(WRONG if value is None or not any(values) else "")

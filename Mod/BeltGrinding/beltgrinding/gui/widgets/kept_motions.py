@@ -1,16 +1,21 @@
 """Motions that a plan leaves as they are, as a person writes them: 12-40, 2:7."""
 
+from __future__ import annotations
+
 import json
 import re
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
 
 from ...engine import InputError
+from ..common.kinds import Json, Widget
 
 ONE = re.compile(r"\s*(?:(\d{1,6})\s*:)?\s*(\d{1,9})\s*(?:[-–]\s*(\d{1,9}))?\s*$")
 
 
-def parsed(text, sources):
+def parsed(text: str, sources: Sequence[str | None]) -> list[dict[str, Any]]:
     """``keep`` of a plan's settings. ``sources``: the file of each program, or None: its poses are meant, not lines.
     Raises InputError."""
     found = []
@@ -32,24 +37,24 @@ def parsed(text, sources):
     return found
 
 
-def stored(keep):
+def stored(keep: Sequence[Json]) -> str:
     """As the property Keep has it."""
-    return json.dumps(keep) if keep else ""
+    return json.dumps(keep, allow_nan=False) if keep else ""
 
 
-def text(keep):
+def text(keep: Iterable[Json]) -> str:
     """What ``parsed`` makes ``keep`` of."""
     return ", ".join(_text(one) for one in keep)
 
 
-def _text(one):
+def _text(one: Json) -> str:
     first = one.get("first_line") or one.get("first_pose") or 0
     last = one.get("last_line") or one.get("last_pose") or 0
     program = f"{one['program']}:" if one.get("program", 1) != 1 else ""
     return f"{program}{first}" + (f"-{last}" if last > first else "")
 
 
-def of_chart(chart, sources):
+def of_chart(chart: Widget, sources: Sequence[str | None]) -> str:
     """What of a FeedChart is chosen, written so."""
     first, last = chart.chosen
     written = []

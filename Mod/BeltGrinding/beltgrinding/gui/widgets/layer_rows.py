@@ -1,7 +1,13 @@
 """Layers between a platen's plate and the belt, from the plate outwards: thickness, Young's modulus, Poisson's ratio."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NoReturn
+
 from ...engine import InputError
 from ..common.compat import QtGui, translate
+from ..common.kinds import Json, Widget
 from .rows import Row, Rows, number, shown
 
 NEW = {
@@ -15,11 +21,11 @@ MOST_RATIO = 0.499
 class LayerRows(Rows):
     """``values()`` gives a job's ``platen.layers``."""
 
-    def __init__(self, layers):
+    def __init__(self, layers: Iterable[Json]) -> None:
         super().__init__("layer", translate("BeltGrinding", "Add layer"))
         self.show_layers(layers)
 
-    def show_layers(self, layers):
+    def show_layers(self, layers: Iterable[Json]) -> None:
         """Puts other layers in the place of those that are shown; nobody is told."""
         changed, self.changed = self.changed, lambda: None
         for row in list(self.rows):
@@ -28,14 +34,14 @@ class LayerRows(Rows):
             self.add(_Layer(layer))
         self.changed = changed
 
-    def same(self, layers):
+    def same(self, layers: Iterable[Json]) -> bool:
         """Whether these are shown; also while one that is being typed is none yet."""
         try:
             return [row.value() for row in self.rows] == list(layers)
         except InputError:
             return True
 
-    def added(self):
+    def added(self) -> None:
         self.add(_Layer(NEW))
         self.changed()
 
@@ -43,7 +49,7 @@ class LayerRows(Rows):
 class _Layer(Row):
     """Its three numbers side by side, below what they are."""
 
-    def __init__(self, layer):
+    def __init__(self, layer: Json) -> None:
         super().__init__(translate("BeltGrinding", "Takes the layer away"))
         columns = (
             ("thickness_mm", translate("BeltGrinding", "mm thick")),
@@ -59,12 +65,12 @@ class _Layer(Row):
             self.grid.setColumnStretch(k, 1)
         self.grid.addWidget(self.away, 1, len(columns))
 
-    def number(self, k):
+    def number(self, k: int) -> None:
         names = ("layerThickness", "layerModulus", "layerRatio")
         for widget, name in zip((*self.lines.values(), self.away), (*names, "removeLayer")):
             widget.setObjectName(f"{name}{k}")
 
-    def value(self):
+    def value(self) -> dict[str, float]:
         found = {key: self._number(line) for key, line in self.lines.items()}
         for key in ("thickness_mm", "youngs_modulus_MPa"):
             if found[key] <= 0.0:
@@ -74,7 +80,7 @@ class _Layer(Row):
             self._refuse("poissons_ratio", text)
         return found
 
-    def _number(self, line):
+    def _number(self, line: Widget) -> float:
         try:
             value = number(line.text())
         except ValueError:
@@ -88,7 +94,7 @@ class _Layer(Row):
             )
         return value
 
-    def _refuse(self, key, reason):
+    def _refuse(self, key: str, reason: str) -> NoReturn:
         line = self.lines[key]
         self.wrong(line)
         raise InputError(

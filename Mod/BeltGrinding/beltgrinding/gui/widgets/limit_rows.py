@@ -1,27 +1,33 @@
 """Limits of a run's figures, under which the best setting is looked for: a figure each, its least and its greatest value."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
 from ...engine import InputError
 from ..common.compat import QtGui, translate
+from ..common.kinds import Texts, Widget
 from .rows import Row, Rows, none_text, number, shown
 
 
 class LimitRows(Rows):
     """``values()`` gives pairs (figure, [least, greatest]), None where there is no such end."""
 
-    def __init__(self, limits, figures):
+    def __init__(self, limits: Mapping[str, Sequence[float | None]], figures: Texts) -> None:
         """``limits``: {figure: [least, greatest]}; ``figures``: {name: text}."""
         super().__init__("limit", translate("BeltGrinding", "Add limit"))
         self.figures, self.check = figures, self._each_once
         for figure, ends in limits.items():
             self.add(_Limit(figure, ends, figures))
 
-    def added(self):
+    def added(self) -> None:
         taken = {row.figure.currentData() for row in self.rows}
         free = next((name for name in self.figures if name not in taken), None)
         self.add(_Limit(free, [None, None], self.figures))
         self.changed()
 
-    def _each_once(self, found):
+    def _each_once(self, found: Sequence[tuple[str, Any]]) -> None:
         taken = set()
         for row, (name, _) in zip(self.rows, found):
             if name in taken:
@@ -37,7 +43,7 @@ class LimitRows(Rows):
 class _Limit(Row):
     """A figure, and below it its ends."""
 
-    def __init__(self, figure, ends, figures):
+    def __init__(self, figure: str | None, ends: Sequence[float | None], figures: Texts) -> None:
         super().__init__(translate("BeltGrinding", "It has no limit"))
         self.figure = self.choices(figures, figure)
         self.low, self.high = (self.entry(shown(value), none_text()) for value in ends)
@@ -51,7 +57,7 @@ class _Limit(Row):
         self.grid.setColumnStretch(0, 1)
         self.grid.setColumnStretch(2, 1)
 
-    def number(self, k):
+    def number(self, k: int) -> None:
         for widget, name in (
             (self.figure, "limitFigure"),
             (self.low, "limitLow"),
@@ -60,7 +66,7 @@ class _Limit(Row):
         ):
             widget.setObjectName(f"{name}{k}")
 
-    def value(self):
+    def value(self) -> tuple[str, list[float | None]]:
         low, high = self._end(self.low), self._end(self.high)
         if low is not None and high is not None and low > high:
             self.wrong(self.high)
@@ -73,7 +79,7 @@ class _Limit(Row):
             )
         return self.figure.currentData(), [low, high]
 
-    def _end(self, line):
+    def _end(self, line: Widget) -> float | None:
         try:
             return number(line.text())
         except ValueError:

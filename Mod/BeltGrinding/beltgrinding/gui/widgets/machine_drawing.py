@@ -1,12 +1,18 @@
 """A small drawing of a belt machine, from its side and to scale: what presses, the belt's way, the work on it."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 
-from ...job import free_run
+from ...geometry import free_run
 from ...objects import belt_machine as machines
+from ...objects.kinds import DocumentObject
 from ..common.compat import QtCore, QtGui, translate
+from ..common.kinds import Array, Colour, Json, Painter, Polygon, QtEvent, QtPoint
 from ..common.theme import readable, theme
 from ..scene import belt_shapes
 
@@ -22,7 +28,7 @@ SMALL = 0.6  # of the size that a wheel has, so that its runs are seen
 class MachineDrawing(QtGui.QWidget):
     """Draws a BeltMachine of the document as its properties are now; ``update()`` after they have changed."""
 
-    def __init__(self, machine):
+    def __init__(self, machine: DocumentObject) -> None:
         super().__init__()
         self.machine = machine
         self.setObjectName("machineDrawing")
@@ -30,7 +36,7 @@ class MachineDrawing(QtGui.QWidget):
         self.setFixedHeight(HEIGHT)
         self.setToolTip(translate("BeltGrinding", "From the side, to scale; the work is above"))
 
-    def paintEvent(self, _):
+    def paintEvent(self, _: QtEvent) -> None:
         painter = QtGui.QPainter(self)
         painter.setRenderHint(QtGui.QPainter.Antialiasing)
         painter.fillRect(self.rect(), QtGui.QColor(theme().ground))
@@ -39,7 +45,7 @@ class MachineDrawing(QtGui.QWidget):
         finally:
             painter.end()
 
-    def _wheel(self, painter):
+    def _wheel(self, painter: Painter) -> None:
         radius = max(self.machine.WheelRadius.Value, 1e-3)
         # The work's mound takes a quarter of the height above the wheel.
         scale = (self.height() - 2 * EDGE - 34) / (2.0 * radius)
@@ -63,7 +69,7 @@ class MachineDrawing(QtGui.QWidget):
             lines.append(translate("BeltGrinding", "rim {} mm").format(f"{rim:g}"))
         self._texts(painter, middle.x() + outer + 8, middle.y() - 14, lines)
 
-    def _runs(self, painter, middle, radius, scale):
+    def _runs(self, painter: Painter, middle: QtPoint, radius: float, scale: float) -> None:
         """The belt's two runs, as far as the drawing goes."""
         machine = self.machine
         x, y = 0.5 * machine.ForkSpread.Value * scale, machine.ForkLength.Value * scale
@@ -85,7 +91,7 @@ class MachineDrawing(QtGui.QWidget):
             )
         painter.restore()
 
-    def _has_rim(self):
+    def _has_rim(self) -> bool:
         return self.machine.Compliance in (
             "wheel_rim",
             "bonded_layer",
@@ -93,7 +99,7 @@ class MachineDrawing(QtGui.QWidget):
             "surrogate",
         )
 
-    def _belt(self, painter):
+    def _belt(self, painter: Painter) -> None:
         machine, thick = self.machine, THICK
         if machine.Kind == machines.PLATEN and machine.PlatenRadius.Value > 0.0:
             job = belt_shapes.as_job(machine)
@@ -121,7 +127,7 @@ class MachineDrawing(QtGui.QWidget):
         self._travel(painter, QtCore.QPointF(ends[1] - 30, top - 9))
         self._say(painter, loop.bottom() + 3)
 
-    def _bent(self, painter, job):
+    def _bent(self, painter: Painter, job: Json) -> None:
         """A belt over a curved platen, of a job's belt_machine: the parts as they are in the cell, one scale for all."""
         loop = belt_shapes.outline(job)
         low, high = loop.min(axis=0), loop.max(axis=0)
@@ -130,7 +136,7 @@ class MachineDrawing(QtGui.QWidget):
         scale = min(across, room / max(high[1] - low[1], 1e-3))
         middle = 0.5 * self.width() - 0.5 * (low[0] + high[0]) * scale
 
-        def polygon(points):
+        def polygon(points: Any) -> Polygon:
             places = [
                 QtCore.QPointF(middle + x * scale, top + (high[1] - z) * scale) for x, z in points
             ]
@@ -152,7 +158,7 @@ class MachineDrawing(QtGui.QWidget):
         self._travel(painter, QtCore.QPointF(self.width() - EDGE - 34, top - 9))
         self._say(painter, top + (high[1] - low[1]) * scale + 5)
 
-    def _say(self, painter, low):
+    def _say(self, painter: Painter, low: float) -> None:
         """The belt's sizes, below."""
         machine = self.machine
         wide = translate("BeltGrinding", "width {}").format(f"{machine.RunWidth.Value:g} mm")
@@ -161,7 +167,7 @@ class MachineDrawing(QtGui.QWidget):
         box = QtCore.QRectF(EDGE, low, self.width() - 2 * EDGE, self.height() - low)
         painter.drawText(box, QtCore.Qt.AlignHCenter | QtCore.Qt.AlignTop, said)
 
-    def _plate(self, painter, at, scale, top, room):
+    def _plate(self, painter: Painter, at: QtPoint, scale: float, top: float, room: float) -> None:
         machine = self.machine
         half = 0.5 * machine.PlatenLength.Value * scale
         layers = [layer["thickness_mm"] * scale for layer in machines.layers_of(machine)]
@@ -179,12 +185,12 @@ class MachineDrawing(QtGui.QWidget):
         painter.setPen(QtCore.Qt.NoPen)
         painter.drawRect(QtCore.QRectF(at.x() - half, top, 2 * half, plate))
 
-    def _disc(self, painter, middle, radius, colour):
+    def _disc(self, painter: Painter, middle: QtPoint, radius: float, colour: Colour) -> None:
         painter.setPen(QtCore.Qt.NoPen)
         painter.setBrush(readable(colour) if colour == BELT else QtGui.QColor(colour))
         painter.drawEllipse(middle, radius, radius)
 
-    def _work(self, painter, at):
+    def _work(self, painter: Painter, at: QtPoint) -> None:
         """A round piece of work that touches the belt at a point."""
         wide, high = 34.0, 26.0
         path = QtGui.QPainterPath()
@@ -200,7 +206,7 @@ class MachineDrawing(QtGui.QWidget):
         box = QtCore.QRectF(at.x() - 60, at.y() - high - 10, 120, 14)
         painter.drawText(box, QtCore.Qt.AlignCenter, translate("BeltGrinding", "work"))
 
-    def _travel(self, painter, at):
+    def _travel(self, painter: Painter, at: QtPoint) -> None:
         """An arrow in the belt's travel."""
         painter.setPen(QtGui.QPen(QtGui.QColor(theme().text), 1.5))
         end = QtCore.QPointF(at.x() + 24, at.y())
@@ -208,7 +214,7 @@ class MachineDrawing(QtGui.QWidget):
         for side in (-1.0, 1.0):
             painter.drawLine(end, QtCore.QPointF(end.x() - ARROW, end.y() + side * 0.7 * ARROW))
 
-    def _texts(self, painter, x, y, lines):
+    def _texts(self, painter: Painter, x: float, y: float, lines: Iterable[str]) -> None:
         painter.setPen(QtGui.QColor(theme().text))
         step = math.ceil(painter.fontMetrics().height())
         for k, line in enumerate(lines):

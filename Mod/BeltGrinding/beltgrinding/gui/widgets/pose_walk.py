@@ -1,12 +1,18 @@
 """Widgets that walk along a robot program: a slider with the cell in the view; a table and the source."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import FreeCADGui as Gui
 import numpy as np
 
 from ...base.frames import to_abc
+from ...objects.kinds import Document, DocumentObject
 from ..common.compat import QtCore, QtGui, translate
+from ..common.kinds import Array, Json, ModelIndex, View3D
 from ..scene.cell_view import CellView
 from .steady import steady
 
@@ -18,12 +24,14 @@ CURRENT = "#ffd54f"  # behind the line of the source that leads to the pose
 class PoseWalk(QtGui.QWidget):
     """Slider, number and a switch; draws the cell at the pose. ``moved(index)`` tells of a new one."""
 
-    def __init__(self, document, machine, paths):
+    def __init__(
+        self, document: Document, machine: DocumentObject | None, paths: Sequence[DocumentObject]
+    ) -> None:
         super().__init__()
         self.paths, self.count = paths, 0
         self.moved = lambda index: None
         self.view = CellView(document, machine)
-        self.picking = []
+        self.picking: list[tuple[View3D, Any]] = []
         body = QtGui.QVBoxLayout(self)
         body.setContentsMargins(0, 0, 0, 0)
         self.program = steady(QtGui.QComboBox())
@@ -59,11 +67,11 @@ class PoseWalk(QtGui.QWidget):
         self._listen(document)
         self.choose(0)
 
-    def path(self):
+    def path(self) -> DocumentObject:
         """The RobotPath that is walked."""
         return self.paths[max(self.program.currentIndex(), 0)]
 
-    def choose(self, index):
+    def choose(self, index: int) -> None:
         """Walks another program, from its first pose."""
         self.view.robot.followed = None
         arrays = self.paths[index].Proxy.arrays(self.paths[index])
@@ -77,24 +85,24 @@ class PoseWalk(QtGui.QWidget):
         self.number.setValue(1)
         self.arrange()
 
-    def arrange(self):
+    def arrange(self) -> None:
         """Follows a change of the cell."""
         part = self.view.cell()["holding"] == "part_in_hand"
         self.moving.setEnabled(part)  # with the tool in hand, the wheel moves anyway
         self.moving.setChecked(self.moving.isChecked() and part)
         self.view.update()
 
-    def go(self, index):
+    def go(self, index: int) -> None:
         """Goes to the pose ``index`` (from 0)."""
         self.number.setValue(index + 1)
 
-    def _go(self, number):
+    def _go(self, number: int) -> None:
         if number > self.count:  # there is none
             return
         self.view.set_pose(number - 1)
         self.moved(number - 1)
 
-    def _listen(self, document):
+    def _listen(self, document: Document) -> None:
         """A click on the path in a 3D view goes to the pose that is drawn there."""
         for view in Gui.getDocument(document.Name).mdiViewsOfType("Gui::View3DInventor"):
             call = view.addEventCallback(
@@ -102,14 +110,14 @@ class PoseWalk(QtGui.QWidget):
             )
             self.picking.append((view, call))
 
-    def _clicked(self, view, event):
+    def _clicked(self, view: View3D, event: Json) -> None:
         plain = not (event["ShiftDown"] or event["CtrlDown"] or event["AltDown"])
         if event["State"] == "DOWN" and event["Button"] == "BUTTON1" and plain:
             index = self.view.nearest(view, event["Position"], REACH)
             if index is not None:
                 self.go(index)
 
-    def release(self):
+    def release(self) -> None:
         """Takes everything out of the 3D views; call it when the panel closes."""
         for view, call in self.picking:
             try:
@@ -123,7 +131,7 @@ class PoseWalk(QtGui.QWidget):
 class _Poses(QtCore.QAbstractTableModel):
     """The poses of a path; made a row at a time, for there may be 100,000."""
 
-    def __init__(self, arrays):
+    def __init__(self, arrays: Mapping[str, Array]) -> None:
         super().__init__()
         self.arrays = arrays
         self.titles = (
@@ -135,18 +143,18 @@ class _Poses(QtCore.QAbstractTableModel):
             translate("BeltGrinding", "Force"),
         )
 
-    def rowCount(self, parent=None):
+    def rowCount(self, parent: ModelIndex = None) -> int:
         return len(self.arrays["lines"])
 
-    def columnCount(self, parent=None):
+    def columnCount(self, parent: ModelIndex = None) -> int:
         return len(self.titles)
 
-    def headerData(self, section, orientation, role):
+    def headerData(self, section: int, orientation: Any, role: Any) -> str | None:
         if role == QtCore.Qt.DisplayRole and orientation == QtCore.Qt.Horizontal:
             return self.titles[section]
         return None
 
-    def data(self, index, role):
+    def data(self, index: ModelIndex, role: Any) -> Any:
         if role == QtCore.Qt.TextAlignmentRole:
             return int(QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter)
         if role != QtCore.Qt.DisplayRole:
@@ -174,7 +182,7 @@ class _Poses(QtCore.QAbstractTableModel):
 class PoseTable(QtGui.QTabWidget):
     """The poses as a table, and the program's text; ``chosen(index)`` tells of a pose chosen here."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         super().__init__()
         self.setObjectName("poseTabs")
         self.chosen = lambda index: None
@@ -195,7 +203,7 @@ class PoseTable(QtGui.QTabWidget):
         self.addTab(self.table, translate("BeltGrinding", "Poses"))
         self.addTab(self.source, translate("BeltGrinding", "Source"))
 
-    def show_path(self, obj):
+    def show_path(self, obj: DocumentObject) -> None:
         """Shows a RobotPath's poses and its source."""
         self.arrays = obj.Proxy.arrays(obj)
         self.model = _Poses(self.arrays)
@@ -208,7 +216,7 @@ class PoseTable(QtGui.QTabWidget):
         self.quiet = False
         self.setTabEnabled(1, bool(self.source.toPlainText()))
 
-    def show_pose(self, index):
+    def show_pose(self, index: int) -> None:
         """Selects a pose that was chosen elsewhere."""
         if self.quiet:
             return
@@ -217,14 +225,14 @@ class PoseTable(QtGui.QTabWidget):
         self._mark(int(self.arrays["lines"][index]))
         self.quiet = False
 
-    def _row_chosen(self, row, _):
+    def _row_chosen(self, row: ModelIndex, _: ModelIndex) -> None:
         if not self.quiet and row.isValid():
             self.quiet = True
             self._mark(int(self.arrays["lines"][row.row()]))
             self.chosen(row.row())
             self.quiet = False
 
-    def _text_clicked(self):
+    def _text_clicked(self) -> None:
         if self.quiet:
             return
         line = self.source.textCursor().blockNumber() + 1
@@ -236,7 +244,7 @@ class PoseTable(QtGui.QTabWidget):
             self.chosen(int(found[0]))
             self.quiet = False
 
-    def _mark(self, line):
+    def _mark(self, line: int) -> None:
         """Marks a line of the source, from 1, and scrolls to it."""
         block = self.source.document().findBlockByNumber(line - 1)
         if line < 1 or not block.isValid():
@@ -251,7 +259,7 @@ class PoseTable(QtGui.QTabWidget):
         self.source.ensureCursorVisible()
 
 
-def _text(path):
+def _text(path: str) -> str:
     """The program's text, '' where there is none to show."""
     try:
         data = (

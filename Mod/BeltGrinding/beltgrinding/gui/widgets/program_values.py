@@ -1,8 +1,16 @@
 """A table of what only the controller knows of a program, to be filled in."""
 
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
 from ...engine import InputError
 from ...objects import program_values
 from ..common.compat import QtCore, QtGui, translate
+
+if TYPE_CHECKING:
+    from ...objects.program_values import Row
 
 NAME, VALUE, LINE, KIND = range(4)  # the dock is narrow: the value beside its name
 HEIGHT = 120  # pixels
@@ -13,10 +21,10 @@ class ProgramValues(QtGui.QWidget):
     content of a values file, ``wrong(error)`` with the InputError of a cell, which is chosen then.
     """
 
-    def __init__(self):
+    def __init__(self) -> None:
         super().__init__()
         self.applied = self.saved = self.wrong = lambda _: None
-        self.rows = []
+        self.rows: Sequence[Row] = []
         column = QtGui.QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         text = translate(
@@ -53,12 +61,13 @@ class ProgramValues(QtGui.QWidget):
             button.clicked.connect(lambda *_, act=act: self._take(act()))
             column.addWidget(button)
 
-    def show_rows(self, rows):
+    def show_rows(self, rows: Sequence[Row]) -> None:
         """Fills the table with ``program_values.Row``."""
         self.rows = rows
         kinds = {
             "bases": translate("BeltGrinding", "base"),
             "tools": translate("BeltGrinding", "tool"),
+            program_values.UNIT: translate("BeltGrinding", "mm or inch"),
         }
         self.table.setRowCount(len(rows))
         for i, row in enumerate(rows):
@@ -79,7 +88,7 @@ class ProgramValues(QtGui.QWidget):
                     item.setFlags(item.flags() & ~QtCore.Qt.ItemIsEditable)
                 self.table.setItem(i, k, item)
 
-    def _take(self, act):
+    def _take(self, act: Callable[[Any], object]) -> None:
         for i, row in enumerate(self.rows):
             try:
                 row.value = program_values.value_of(row, self.table.item(i, VALUE).text())

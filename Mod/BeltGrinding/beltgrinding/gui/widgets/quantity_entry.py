@@ -4,13 +4,19 @@ FreeCAD's own writes 20000 mm/s, 0 mN and -50 um, by the unit system of the whol
 entry's own does not change that.
 """
 
+from __future__ import annotations
+
 import math
+from typing import Any
 
 from FreeCAD import Units
 
+from ...base.messages import reason
 from ...objects import preferences
+from ...objects.kinds import DocumentObject
 from ...objects.properties import unit_of
 from ..common.compat import QtCore, QtGui, translate
+from ..common.kinds import QtEvent
 
 DIGITS = 7
 SIZES = {  # in FreeCAD's own units: mm, mN, kPa, mm/s
@@ -37,19 +43,19 @@ BY_PREFERENCE = {"ToleranceLower", "ToleranceUpper", "ColourLimit"}  # deviation
 LENGTHS, SPEEDS = {"mm", "µm", "mil"}, {"mm/s", "m/s"}
 
 
-def metric():
+def metric() -> bool:
     """Whether FreeCAD's unit system counts lengths in millimetres; its own entries are used where not."""
     return Units.Quantity(5.0, Units.Length).UserString.endswith("mm")
 
 
-def symbol_of(obj, name):
+def symbol_of(obj: DocumentObject, name: str) -> str:
     """The unit in which a property is shown."""
     if name in BY_PREFERENCE:
         return preferences.deviation_unit().symbol
     return unit_of(obj, name) or KINDS[obj.getTypeIdOfProperty(name)]
 
 
-def written(value, symbol):
+def written(value: float, symbol: str) -> str:
     """A value in FreeCAD's unit as text."""
     shown = value / SIZES[symbol]
     if shown == 0.0:
@@ -65,24 +71,26 @@ class QuantityEntry(QtGui.QLineEdit):
 
     valueChanged = QtCore.Signal(float)
 
-    def __init__(self, value, unit, symbol):
+    def __init__(self, value: float, unit: Any, symbol: str) -> None:
         """value: in FreeCAD's unit; unit: FreeCAD's Unit; symbol: one of SIZES."""
         super().__init__()
         self.unit, self.symbol = unit, symbol
         self.raw = float(value)
-        self.bound = None  # (object, property) that may have an expression
+        self.bound: tuple[
+            DocumentObject, str
+        ] | None = None  # (object, property) that may have an expression
         self.refused = lambda value: False  # a value that is not taken
         self.complain = lambda text: None  # of an expression that is not taken
         self._write()
         self.textChanged.connect(self._typed)
         self.editingFinished.connect(self._finished)
 
-    def bind(self, obj, name):
+    def bind(self, obj: DocumentObject, name: str) -> None:
         """Lets an expression be typed, after =, that drives a property of ``obj``."""
         self.bound = obj, name
         self._write()
 
-    def expression(self):
+    def expression(self) -> str:
         """The expression that drives the property; '' if there is none."""
         if self.bound is None:
             return ""
@@ -90,12 +98,12 @@ class QuantityEntry(QtGui.QLineEdit):
         found = [text for path, text in obj.ExpressionEngine if path.lstrip(".") == name]
         return found[0] if found else ""
 
-    def show_value(self, value):
+    def show_value(self, value: float) -> None:
         """Shows a value, in FreeCAD's unit, that was set from elsewhere."""
         self.raw = float(value)
         self._write()
 
-    def parsed(self, text):
+    def parsed(self, text: str) -> float:
         """The value of a text in FreeCAD's unit. Raises ValueError with what is wrong."""
         text = text.strip().replace(",", ".").replace("um", "µm")
         if not text:
@@ -108,7 +116,7 @@ class QuantityEntry(QtGui.QLineEdit):
             raise ValueError(translate("BeltGrinding", "This is no number: {}").format(text))
         return value
 
-    def _with_unit(self, text):
+    def _with_unit(self, text: str) -> float:
         alike = next((one for one in (LENGTHS, SPEEDS) if self.symbol in one), {self.symbol})
         for symbol in sorted(alike, key=len, reverse=True):
             if text.endswith(symbol) and _number(text[: -len(symbol)]) is not None:
@@ -125,7 +133,7 @@ class QuantityEntry(QtGui.QLineEdit):
             raise ValueError(translate("BeltGrinding", "The unit does not fit: {}").format(text))
         return quantity.Value * SIZES[self.symbol]  # 2 * 3.5
 
-    def _typed(self, text):
+    def _typed(self, text: str) -> None:
         if text.startswith("=") or self.signalsBlocked():
             return
         try:
@@ -139,7 +147,7 @@ class QuantityEntry(QtGui.QLineEdit):
             self.raw = value
             self.valueChanged.emit(value)
 
-    def _finished(self):
+    def _finished(self) -> None:
         text = self.text().strip()
         if text.startswith("=") and self.bound is not None:
             obj, name = self.bound
@@ -147,7 +155,7 @@ class QuantityEntry(QtGui.QLineEdit):
                 obj.setExpression(name, text[1:])
                 obj.recompute()
             except Exception as error:  # FreeCAD's parser has errors of many kinds
-                self.complain(str(error))
+                self.complain(reason(error))
                 return
             self.raw = float(getattr(obj, name))
             self.valueChanged.emit(self.raw)
@@ -160,7 +168,7 @@ class QuantityEntry(QtGui.QLineEdit):
                 return  # refused, and is marked
         self._write()
 
-    def _write(self):
+    def _write(self) -> None:
         blocked = self.blockSignals(True)
         self.setText(written(self.raw, self.symbol))
         self.setCursorPosition(0)  # else a narrow panel shows the last digits only
@@ -169,28 +177,28 @@ class QuantityEntry(QtGui.QLineEdit):
         font.setItalic(bool(self.expression()))
         self.setFont(font)
 
-    def keyPressEvent(self, event):
+    def keyPressEvent(self, event: QtEvent) -> None:
         steps = {QtCore.Qt.Key_Up: 1, QtCore.Qt.Key_Down: -1}.get(event.key(), 0)
         if not steps:
             return super().keyPressEvent(event)
         self._step(steps)
 
-    def wheelEvent(self, event):
+    def wheelEvent(self, event: QtEvent) -> None:
         """Turns the value where one has clicked into it; else what lies below scrolls."""
         if not self.hasFocus():
             return event.ignore()
         self._step(1 if event.angleDelta().y() > 0 else -1)
         event.accept()
 
-    def _step(self, steps):
+    def _step(self, steps: float) -> None:
         shown = self.raw / SIZES[self.symbol]
         step = 1.0 if abs(shown) >= 1.0 else 0.01
         self.setText(written((shown + steps * step) * SIZES[self.symbol], self.symbol))
 
-    def _get_raw(self):
+    def _get_raw(self) -> float:
         return self.raw
 
-    def _set_raw(self, value):
+    def _set_raw(self, value: float) -> None:
         if value != self.raw:
             self.raw = float(value)
             self._write()
@@ -199,7 +207,7 @@ class QuantityEntry(QtGui.QLineEdit):
     rawValue = QtCore.Property(float, _get_raw, _set_raw)
 
 
-def _number(text):
+def _number(text: str) -> float | None:
     try:
         return float(text.strip())
     except ValueError:

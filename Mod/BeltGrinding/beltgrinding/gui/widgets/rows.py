@@ -1,7 +1,13 @@
 """Rows that are added and taken away, with what is wrong told below them: the place of a panel's short lists."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
 from ...engine import InputError
 from ..common.compat import QtGui, translate
+from ..common.kinds import Texts, Widget
 from ..common.messages import error_text
 from ..common.theme import warning_style
 from .form import WRONG
@@ -15,7 +21,7 @@ CHARACTERS = (
 class Row(QtGui.QFrame):
     """A row of ``Rows``. A subclass lays its widgets out, names them in ``number(k)``, and gives its ``value()``."""
 
-    def __init__(self, away):
+    def __init__(self, away: str) -> None:
         """``away``: what the button that takes it away says in its tooltip."""
         super().__init__()
         self.changed = self.gone = lambda: None
@@ -28,7 +34,7 @@ class Row(QtGui.QFrame):
         self.away.setToolTip(away)
         self.away.clicked.connect(lambda: self.gone())
 
-    def choices(self, texts, chosen):
+    def choices(self, texts: Texts, chosen: str | None) -> Widget:
         """A list of ``texts`` ({value: text}); ``chosen`` is offered too where it is none of them."""
         box = steady(QtGui.QComboBox())
         box.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
@@ -36,14 +42,14 @@ class Row(QtGui.QFrame):
         box.setSizePolicy(QtGui.QSizePolicy.Ignored, QtGui.QSizePolicy.Fixed)
         choose(box, texts, chosen)
 
-        def other(_):
+        def other(_: int) -> None:
             box.setToolTip(box.currentText())
             self.changed()
 
         box.currentIndexChanged.connect(other)
         return box
 
-    def entry(self, text, placeholder=""):
+    def entry(self, text: str, placeholder: str = "") -> Widget:
         """A line for a number."""
         line = QtGui.QLineEdit(text)
         line.setMinimumWidth(40)
@@ -51,20 +57,20 @@ class Row(QtGui.QFrame):
         line.textChanged.connect(lambda _: self.changed())
         return line
 
-    def number(self, k):
+    def number(self, k: int) -> None:
         """Gives its widgets the names by which they are found; ``k``: from 1."""
         raise NotImplementedError
 
-    def value(self):
+    def value(self) -> Any:
         """What it holds. Raises InputError, whose widget it marks by ``wrong``."""
         raise NotImplementedError
 
     @staticmethod
-    def wrong(widget):
+    def wrong(widget: Widget) -> None:
         """Marks a widget whose value cannot be."""
         widget.setStyleSheet(WRONG)
 
-    def right(self):
+    def right(self) -> None:
         """Takes the marks away."""
         for widget in self.findChildren(QtGui.QLineEdit) + self.findChildren(QtGui.QComboBox):
             if widget.styleSheet():
@@ -75,7 +81,7 @@ class Rows(QtGui.QWidget):
     """``values()`` gives what the rows hold; ``changed()`` tells of a change, and ``check(values)`` raises InputError for
     what they cannot be together."""
 
-    def __init__(self, name, add):
+    def __init__(self, name: str, add: str) -> None:
         """``name``: its object name; ``add``: the text of the button that adds a row, called ``add`` and the name."""
         super().__init__()
         self.setObjectName(name)
@@ -97,11 +103,11 @@ class Rows(QtGui.QWidget):
         self.button.clicked.connect(lambda: self.added())
         body.addWidget(self.button)
 
-    def added(self):
+    def added(self) -> None:
         """The button was pressed."""
         raise NotImplementedError
 
-    def add(self, row):
+    def add(self, row: Row) -> None:
         """Takes a ``Row``."""
         row.changed = lambda: self.changed()
         row.gone = lambda: self.remove(row)
@@ -109,7 +115,7 @@ class Rows(QtGui.QWidget):
         self.place.addWidget(row)
         self._number()
 
-    def remove(self, row):
+    def remove(self, row: Row) -> None:
         """Takes a row away."""
         self.rows.remove(row)
         self.place.removeWidget(row)
@@ -118,11 +124,11 @@ class Rows(QtGui.QWidget):
         self._number()
         self.changed()
 
-    def _number(self):
+    def _number(self) -> None:
         for k, row in enumerate(self.rows, 1):
             row.number(k)
 
-    def values(self):
+    def values(self) -> list[Any]:
         """[what each row holds]. What is wrong is marked and told below the rows; then it raises InputError."""
         found, error = [], None
         for row in self.rows:
@@ -143,7 +149,7 @@ class Rows(QtGui.QWidget):
         return found
 
 
-def choose(box, texts, chosen):
+def choose(box: Widget, texts: Mapping[Any, str], chosen: str | None) -> None:
     """Fills a list of choices anew with ``texts`` ({value: text}) and sets it; ``chosen`` is offered too where it is none of
     them."""
     box.blockSignals(True)
@@ -157,19 +163,19 @@ def choose(box, texts, chosen):
     box.blockSignals(False)
 
 
-def number(text):
+def number(text: str) -> float | None:
     """The number of a text, whose comma is a decimal one; None of an empty one. Raises ValueError."""
     text = text.strip().replace(",", ".").replace("−", "-")
     return float(text) if text else None
 
 
-def shown(value):
+def shown(value: float | None) -> str:
     """A number as a line shows it, with no digit lost; "" for None."""
     if value is None:
         return ""
     return f"{value:g}" if float(f"{value:g}") == value else repr(value)
 
 
-def none_text():
+def none_text() -> str:
     """What an empty line stands for."""
     return translate("BeltGrinding", "none")

@@ -1,9 +1,14 @@
 """What varies in a study: for each key of the job how its values come, and the values."""
 
+from __future__ import annotations
+
 import json
+from collections.abc import Iterable
+from typing import Any
 
 from ...engine import InputError
 from ..common.compat import QtGui, translate
+from ..common.kinds import Json, Texts, Widget
 from .steady import steady
 
 NUMBERS = {  # kind: its numbers, in order
@@ -19,7 +24,7 @@ NUMBERS = {  # kind: its numbers, in order
 HOWS = {"set": "=", "add": "+", "multiply": "×"}
 
 
-def kinds():
+def kinds() -> dict[str, str]:
     """{kind: text}"""
     return {
         "range": translate("BeltGrinding", "from … to"),
@@ -35,7 +40,7 @@ def kinds():
 class VariedRows(QtGui.QWidget):
     """``entries()`` gives the study's ``vary``; ``changed()`` tells. ``texts``: {key: what it is}."""
 
-    def __init__(self, entries, texts):
+    def __init__(self, entries: Iterable[Json], texts: Texts) -> None:
         super().__init__()
         self.setObjectName("varied")
         self.changed, self.texts, self.rows = lambda: None, texts, []
@@ -45,7 +50,7 @@ class VariedRows(QtGui.QWidget):
         for entry in entries:
             self.add(entry)
 
-    def add(self, entry):
+    def add(self, entry: Json) -> None:
         """Adds a row for an entry of a study's ``vary``."""
         row = _Row(entry, self.texts.get(entry["key"], entry["key"]))
         row.changed = lambda: self.changed()
@@ -54,7 +59,7 @@ class VariedRows(QtGui.QWidget):
         self.layout_.addWidget(row)
         self._number()
 
-    def remove(self, row):
+    def remove(self, row: _Row) -> None:
         """Takes a row away."""
         self.rows.remove(row)
         self.layout_.removeWidget(row)
@@ -63,11 +68,11 @@ class VariedRows(QtGui.QWidget):
         self._number()
         self.changed()
 
-    def _number(self):
+    def _number(self) -> None:
         for number, row in enumerate(self.rows, 1):
             row.number(number)
 
-    def entries(self):
+    def entries(self) -> list[dict[str, Any]]:
         """A study's ``vary``. Raises InputError for values that are none."""
         return [row.entry() for row in self.rows]
 
@@ -75,7 +80,7 @@ class VariedRows(QtGui.QWidget):
 class _Row(QtGui.QFrame):
     """A key of the job, and below it how it varies."""
 
-    def __init__(self, entry, about):
+    def __init__(self, entry: Json, about: str) -> None:
         super().__init__()
         self.changed = self.gone = lambda: None
         shown = ("how", "range", "values", "distribution")
@@ -109,7 +114,7 @@ class _Row(QtGui.QFrame):
             for widget in (self.how, self.kind, self.values):
                 widget.setEnabled(False)
 
-    def _choices(self, texts, chosen, width):
+    def _choices(self, texts: Texts, chosen: str, width: int) -> Widget:
         box = steady(QtGui.QComboBox())
         for key, text in texts.items():
             box.addItem(text, key)
@@ -118,14 +123,14 @@ class _Row(QtGui.QFrame):
         box.view().setMinimumWidth(190)
         box.setToolTip(box.currentText())
 
-        def other(_):
+        def other(_: int) -> None:
             box.setToolTip(box.currentText())
             self.changed()
 
         box.currentIndexChanged.connect(other)
         return box
 
-    def number(self, number):
+    def number(self, number: int) -> None:
         """Gives its widgets the names by which they are found."""
         for widget, name in (
             (self.how, "variedHow"),
@@ -135,7 +140,7 @@ class _Row(QtGui.QFrame):
         ):
             widget.setObjectName(f"{name}{number}")
 
-    def entry(self):
+    def entry(self) -> dict[str, Any]:
         """Its entry of a study's ``vary``. Raises InputError for values that are none."""
         entry = dict(self.kept)
         if "parts" in entry:
@@ -161,7 +166,7 @@ class _Row(QtGui.QFrame):
         return {**entry, "distribution": {**ends, "kind": kind, **dict(zip(names, numbers))}}
 
 
-def _unreadable(key, kind):
+def _unreadable(key: str, kind: str) -> InputError:
     return InputError(
         "gui.varied_values",
         "{key}: give the numbers of '{kind}', with blanks or semicolons between them",
@@ -170,7 +175,7 @@ def _unreadable(key, kind):
     )
 
 
-def _told(entry):
+def _told(entry: Json) -> tuple[str, str]:
     """(kind, text of the values) of an entry."""
     if "parts" in entry:
         return "values", translate("BeltGrinding", "{} parts").format(len(entry["parts"]))
@@ -184,14 +189,14 @@ def _told(entry):
     return given["kind"], "  ".join(_text(value) for value in [*numbers, *steps])
 
 
-def _text(value):
+def _text(value: Any) -> str:
     number = isinstance(value, (int, float)) and not isinstance(value, bool)
     if number:
         return f"{value:g}" if float(f"{value:g}") == value else repr(value)
-    return value if isinstance(value, str) else json.dumps(value)
+    return value if isinstance(value, str) else json.dumps(value, allow_nan=False)
 
 
-def _values(text):
+def _values(text: str) -> list[Any]:
     """Numbers and words of a text, between blanks or semicolons; a decimal comma is one."""
     found = []
     for word in text.replace(";", " ").replace("…", " ").replace("−", "-").split():

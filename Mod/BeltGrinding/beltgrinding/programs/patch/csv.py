@@ -1,11 +1,19 @@
 """Writes changes back into a CSV of poses."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ...base.kinds import known
 from .text import Source, decimal, decimals, moved
+
+if TYPE_CHECKING:
+    from .text import Work
 
 ROUNDING_MM = 6e-5
 
 
-def source(data):
+def source(data: bytes) -> Source:
     """The reader counts lines as Python does, in UTF-8."""
     text = data.decode("utf-8-sig")
     ends, at = [], len(data) - len(text.encode())
@@ -18,15 +26,15 @@ def source(data):
     return Source(data, ends)
 
 
-def derived(source, line):
+def derived(source: Source, line: int) -> bool:
     return False
 
 
-def rounding_mm_s(source, line):
+def rounding_mm_s(source: Source, line: int) -> float:
     return 1e-6
 
 
-def edit(source, work):
+def edit(source: Source, work: Work) -> None:
     line = next(k for k in range(1, len(source) + 1) if _counts(source.line(k)))
     head = source.line(line).removeprefix("\xef\xbb\xbf")
     delimiter = max(",;\t", key=head.count)
@@ -44,18 +52,18 @@ def edit(source, work):
             had = decimals(source.text[begin:end])
             source.replace(begin, end, decimal(value, max(had, 6), had))
     for line, _, shift in work.targets():
-        for column, step in zip(("x_mm", "y_mm", "z_mm"), work.in_base(shift)):
+        for column, step in zip(("x_mm", "y_mm", "z_mm"), known(work.in_base(shift))):
             if step:
                 begin, end = _cell(source, work, line, delimiter, columns[column])
                 source.replace(begin, end, moved(source.text[begin:end], step))
 
 
-def _counts(text):
+def _counts(text: str) -> bool:
     text = text.removeprefix("\xef\xbb\xbf").strip()
-    return text and not text.startswith("#")
+    return bool(text) and not text.startswith("#")
 
 
-def _cell(source, work, line, delimiter, number):
+def _cell(source: Source, work: Work, line: int, delimiter: str, number: int) -> tuple[int, int]:
     """The span of a value, without blanks and quotes."""
     begin, end = source.span(line)
     quoted, count, first = False, 0, begin

@@ -4,13 +4,21 @@ A target in data is moved by the geometric operator; a literal one by its number
 whose BAS(#CP_PARAMS, v) governs its motion only gets v there and in the form's own text.
 """
 
+from __future__ import annotations
+
 import re
+from collections.abc import Collection, Sequence
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from ..readers.krl.blocks import MOTION, OPENING
-from ..readers.krl.reader import ASSIGN, HARMLESS, SPEED
+from ...base.kinds import Floats, known
+from ..languages.krl.blocks import ASSIGN, HARMLESS, MOTION, OPENING
+from ..languages.krl.motions import SPEED
 from .text import SMALL, decimal, moved, plan
+
+if TYPE_CHECKING:
+    from .text import Shift, Source, Work
 
 ROUNDING_MM = 6e-5
 SPEED_DIGITS = 9  # of m/s
@@ -26,16 +34,18 @@ FORM = re.compile(r"\s*;\s*FOLD\s+(?:S?LIN|S?CIRC)\b.*?\bVel\s*=\s*([\d.]+)\s*m/
 FORM_PARAMETER = re.compile(r",\s*5:\s*([\d.]+)")
 FORM_LINES = 8  # from a form's FOLD to its BAS at most
 
+Codes: TypeAlias = "dict[int, tuple[int, int]]"  # of lines: (begin, end) of their statement
 
-def derived(source, line):
+
+def derived(source: Source, line: int) -> bool:
     return False
 
 
-def rounding_mm_s(source, line):
+def rounding_mm_s(source: Source, line: int) -> float:
     return 1e-6
 
 
-def edit(source, work):
+def edit(source: Source, work: Work) -> None:
     work.no_force()
     codes = _codes(source)
     _speeds(source, work, codes)
@@ -43,21 +53,26 @@ def edit(source, work):
         _move(source, work, codes, line, target, shift)
 
 
-def _codes(source):
+def _codes(source: Source) -> Codes:
     """{line: (begin, end)} of the statements, without comments and blanks."""
-    codes = {}
+    codes: Codes = {}
     for line in range(1, len(source) + 1):
-        text = CODE.match(source.line(line)).group(0)
+        text = known(CODE.match(source.line(line))).group(0)
         begin = source.span(line)[0] + len(text) - len(text.lstrip())
         if text.strip() and not text.lstrip().startswith("&"):
             codes[line] = (begin, source.span(line)[0] + len(text.rstrip()))
     return codes
 
 
-def _role(source, work, line, text, routines):
-    """What a statement is to the modal speed (patch_text.plan)."""
+def _word(text: str) -> str:
+    """The first word of a statement, in lower case."""
     word = WORD.match(text)
-    word = word.group(0).lower() if word else ""
+    return word.group(0).lower() if word else ""
+
+
+def _role(source: Source, work: Work, line: int, text: str, routines: Collection[str]) -> str:
+    """What a statement is to the modal speed (patch_text.plan)."""
+    word = _word(text)
     motion = MOTION.match(text)
     if motion:
         if motion.group(1).upper() in ("PTP", "SPTP", "PTP_REL", "SPTP_REL"):
@@ -67,7 +82,7 @@ def _role(source, work, line, text, routines):
         return "plain" if SPEED.search(_tail(text)) else "path"
     assigned = ASSIGN.match(text)
     if assigned and word not in ("trigger", "wait", "interrupt", "for", "spline"):
-        name = assigned.group(2).lower()
+        name = assigned["path"].lower()
         return "speed" if name == "$vel.cp" else "barrier" if name == "$vel" else "plain"
     if word in ("spline", "endspline"):
         return "plain"
@@ -85,17 +100,18 @@ def _role(source, work, line, text, routines):
     return "plain"
 
 
-def _speeds(source, work, codes):
+def _speeds(source: Source, work: Work, codes: Codes) -> None:
     """Speeds in splines by WITH, all others by the modal $VEL.CP."""
     if not work.speeds:
         return
-    wanted, statements, spline = dict(work.speeds), [], None
+    wanted = dict(work.speeds)
+    statements: list[tuple[int, str]] = []
+    spline: tuple[int, list[int]] | None = None
     texts = {line: source.text[slice(*span)] for line, span in codes.items()}
     heads = (DEFINED.match(text) for text in texts.values())
     routines = {head.group(1).lower() for head in heads if head}
     for line, text in texts.items():
-        word = WORD.match(text)
-        word = word.group(0).lower() if word else ""
+        word = _word(text)
         role = _role(source, work, line, text, routines)
         if word == "spline":
             spline = (line, [])
@@ -120,7 +136,14 @@ def _speeds(source, work, codes):
             _set(source, codes, line, value)
 
 
-def _spline(source, work, codes, wanted, header, lines):
+def _spline(
+    source: Source,
+    work: Work,
+    codes: Codes,
+    wanted: dict[int, float],
+    header: int,
+    lines: Sequence[int],
+) -> None:
     """The speeds of a spline block's motions: in its head where all get the same."""
     values = {wanted.pop(line, None) for line in lines}
     mine = {line: work.speeds[line] for line in lines if line in work.speeds}
@@ -128,13 +151,13 @@ def _spline(source, work, codes, wanted, header, lines):
     begin, end = codes[header]
     head = SPEED.search(source.text, begin, end)
     if len(values) == 1 and mine and head and not own:
-        source.replace(*head.span(1), decimal(values.pop() / 1000.0, SPEED_DIGITS))
+        source.replace(*head.span(1), decimal(known(values.pop()) / 1000.0, SPEED_DIGITS))
         return
     for line, value in mine.items():
         _with(source, codes, line, value)
 
 
-def _with(source, codes, line, value):
+def _with(source: Source, codes: Codes, line: int, value: float) -> None:
     """A speed of a motion's own."""
     begin, end = codes[line]
     text = decimal(value / 1000.0, SPEED_DIGITS)
@@ -152,13 +175,13 @@ def _with(source, codes, line, value):
     source.replace(at, at, f" WITH $VEL.CP={text}")
 
 
-def _set(source, codes, line, value):
+def _set(source: Source, codes: Codes, line: int, value: float) -> None:
     """The speed in an assignment or a BAS, and in the inline form around it."""
     begin, end = codes[line]
     text = decimal(value / 1000.0, SPEED_DIGITS)
     code = source.text[begin:end]
     bas = BAS.match(code)
-    span = bas.span(1) if bas else ASSIGN.match(code).span(4)
+    span = bas.span(1) if bas else known(ASSIGN.match(code)).span("value")
     first, last = begin + span[0], begin + span[1]
     while first < last and source.text[first].isspace():
         first += 1
@@ -174,14 +197,15 @@ def _set(source, codes, line, value):
             break
 
 
-def _tail(text):
+def _tail(text: str) -> str:
     """What follows a motion's targets."""
     return text[_targets(text)[-1][1] :]
 
 
-def _targets(text):
+def _targets(text: str) -> list[tuple[int, int]]:
     """Spans of the targets of a motion statement."""
-    spans, depth, first = [], 0, MOTION.match(text).start(2)
+    spans: list[tuple[int, int]] = []
+    depth, first = 0, known(MOTION.match(text)).start(2)
     for at in range(first, len(text) + 1):
         letter = text[at] if at < len(text) else ""
         rest = depth == 0 and letter.isspace() and REST.match(text, at)
@@ -195,17 +219,18 @@ def _targets(text):
     return spans
 
 
-def _move(source, work, codes, line, target, shift):
+def _move(source: Source, work: Work, codes: Codes, line: int, target: int, shift: Shift) -> None:
     begin, end = codes[line]
     code = source.text[begin:end]
-    if not MOTION.match(code):
+    motion = MOTION.match(code)
+    if not motion:
         raise work.refuse(
             line,
             "programs.patch.motion_not_found",
             "the motion is not found in its line; change it by hand",
         )
-    if "_REL" in MOTION.match(code).group(1).upper():
-        work.relative(line, shift, MOTION.match(code).group(1).upper())
+    if "_REL" in motion.group(1).upper():
+        work.relative(line, shift, motion.group(1).upper())
         return
     spans = _targets(code)
     first, last = (begin + at for at in spans[target])
@@ -228,12 +253,14 @@ def _move(source, work, codes, line, target, shift):
     source.replace(first, last, left + text + right)
 
 
-def _frame(step):
+def _frame(step: Floats) -> str:
     x, y, z = (decimal(v, 6) for v in np.round(step, 6))
     return f"{{FRAME: X {x},Y {y},Z {z},A 0,B 0,C 0}}"
 
 
-def _move_literal(source, work, line, shift, first, text):
+def _move_literal(
+    source: Source, work: Work, line: int, shift: Shift, first: int, text: str
+) -> None:
     """The numbers of an aggregate; a component it does not name is the motion's before."""
     step = work.in_base(shift)
     if step is None:
@@ -242,7 +269,7 @@ def _move_literal(source, work, line, shift, first, text):
             "programs.patch.rounds_literal",
             "its rounds are turned differently; a literal cannot tell them",
         )
-    places = {}
+    places: dict[str, tuple[int, int]] = {}
     for match in re.finditer(r"(?:[{,:])\s*([A-Za-z_]\w*)\s+([^,{}]+?)\s*(?=[,}])", text):
         places[match.group(1).upper()] = match.span(2)
     last = max((span[1] for span in places.values()), default=None)
@@ -270,5 +297,5 @@ def _move_literal(source, work, line, shift, first, text):
                     "its {name} is not given; change it by hand",
                     name=name,
                 )
-            place = work.program.motions[shift.motions[0]].pose["XYZ".index(name), 3] + value
+            place = known(work.program.motions[shift.motions[0]].pose)["XYZ".index(name), 3] + value
             source.replace(first + last, first + last, f",{name} {decimal(place, 6)}")

@@ -4,6 +4,8 @@ The original's bytes stay but for the edits. What is written has been read again
 named motions differ, by what was asked, or nothing is written.
 """
 
+from __future__ import annotations
+
 import csv
 import io
 import math
@@ -11,18 +13,24 @@ import os
 import tempfile
 from bisect import bisect_right
 from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 import numpy as np
 
 from ...base.files import cannot_be_written, write_whole
+from ...base.kinds import Json
 from ...base.regular_files import shown
 from ..given import beside as values_beside
 from ..program import Fact, ProgramError, bytes_of, name_of
-from ..readers.krl.data_lists import others as krl_lists
-from ..readers.rapid import modules as rapid_modules
+from ..languages.krl.data_lists import others as krl_lists
+from ..languages.rapid import modules as rapid_modules
 from ..registry import read_program
 from .text import SMALL, Overlap, Shift, Source, Work
+
+if TYPE_CHECKING:
+    from ..program import Motion, Program
 
 COLUMNS = ("speed_mm_s", "force_N", "dx_mm", "dy_mm", "dz_mm", "tool_dz_mm")
 MAX_STEP = 1000.0  # mm; a larger offset is a mistake
@@ -30,6 +38,7 @@ MAX_SPEED = 10_000.0  # mm/s
 MAX_FORCE = 10_000.0  # N
 UNCHANGED = 1e-9  # mm and of a rotation's matrix; numbers that were not edited read the same
 
+Named: TypeAlias = "Mapping[int, Mapping[str, float]]"  # of motions, what is to be changed
 
 # What of a motion a change must not alter.
 ITS = {
@@ -44,32 +53,59 @@ ITS = {
 }
 
 
-def _language(name, suffix):
+class Language(Protocol):
+    """The module that edits a language. Some have ``source(data)`` besides, and ``TURN_IS_FREE``."""
+
+    @property
+    def ROUNDING_MM(self) -> float:
+        ...
+
+    def derived(self, source: Source, line: int) -> bool:
+        ...
+
+    def rounding_mm_s(self, source: Source, line: int) -> float:
+        ...
+
+    def edit(self, source: Source, work: Work) -> None:
+        ...
+
+
+def _language(name: str, suffix: str) -> Language:
     """The module that edits a language: ``edit(source, work)``; ``suffix`` in lower case."""
     if name == "URScript" and suffix != ".script":  # script inside of a container
         name = f"{name} ({suffix})"
     if name == "KUKA KRL":
-        from . import krl as module
-    elif name == "ABB RAPID":
-        from . import rapid as module
-    elif name == "URScript":
-        from . import urscript as module
-    elif name in ("Fanuc TP", "Yaskawa INFORM"):
-        from . import taught as module
-    elif name in ("G-code", "APT"):
-        from . import milling as module
-    elif name == "CSV":
-        from . import csv as module
-    else:
-        raise ProgramError(
-            "programs.patch.language",
-            "programs in {language} cannot be written back yet; change them by hand",
-            language=name,
-        )
-    return module
+        from . import krl
+
+        return krl
+    if name == "ABB RAPID":
+        from . import rapid
+
+        return rapid
+    if name == "URScript":
+        from . import urscript
+
+        return urscript
+    if name in ("Fanuc TP", "Yaskawa INFORM"):
+        from . import taught
+
+        return taught
+    if name in ("G-code", "APT"):
+        from . import milling
+
+        return milling
+    if name == "CSV":
+        from . import csv as table
+
+        return table
+    raise ProgramError(
+        "programs.patch.language",
+        "programs in {language} cannot be written back yet; change them by hand",
+        language=name,
+    )
 
 
-def read_changes(path):
+def read_changes(path: Path | str) -> list[dict[str, Any]]:
     """List of changes, a dict each, from a CSV with the columns ``index`` or ``line``, and any of
     ``COLUMNS``; an empty field changes nothing. Raises ProgramError naming the line."""
     name = name_of(path)
@@ -130,7 +166,7 @@ def read_changes(path):
             )
         given = {key: value.strip() for key, value in zip(columns, row) if value.strip()}
         try:
-            change = {
+            change: dict[str, Any] = {
                 key: int(value) if key in ("index", "line") else float(value)
                 for key, value in given.items()
             }
@@ -146,7 +182,9 @@ def read_changes(path):
     return changes
 
 
-def patch(path, changes, output):
+def patch(
+    path: Path | str, changes: Path | str | Iterable[Json], output: Path | str
+) -> list[dict[str, Any]]:
     """Writes the program in ``path`` to ``output`` with the changes, and nothing else changed.
 
     changes: a CSV file (``read_changes``) or a list of dicts with the same keys: ``index`` (as in
@@ -164,7 +202,7 @@ def patch(path, changes, output):
     program = read_program(path)
     module = _language(program.language, path.suffix.lower())
     data = path.read_bytes()
-    source = module.source(data) if hasattr(module, "source") else Source(data)
+    source: Source = getattr(module, "source", Source)(data)
     work = _work(program, changes, source, module)
     module.edit(source, work)
     try:
@@ -183,28 +221,27 @@ def patch(path, changes, output):
             (Path(folder) / other.name).write_bytes(other.read_bytes())
         copy = Path(folder) / path.name
         values = values_beside(path)
-        values = values if os.path.isfile(values) else None
         copy.write_bytes(written)
-        again = read_program(copy, values=values)
+        again = read_program(copy, values=values if os.path.isfile(values) else None)
     report = _verify(program, again, work, source, module)
     _write(output, written, beside, path)
     return report
 
 
-def _seen(path, language):
+def _seen(path: Path, language: str) -> Sequence[Path]:
     """Other files that the reading of a program looks at."""
     if language == "KUKA KRL":
         return [other for other, _ in krl_lists(path)[0]]
     return rapid_modules.files(path) if language == "ABB RAPID" else []
 
 
-def _data_file(path):
+def _data_file(path: Path) -> Path | None:
     stem = path.stem.lower()
     found = [p for p in path.parent.glob("*") if p.suffix.lower() == ".dat"]
     return next((p for p in sorted(found) if p.stem.lower() == stem), None)
 
 
-def _write(output, written, beside, path):
+def _write(output: Path, written: bytes, beside: Path | None, path: Path) -> None:
     if output.suffix.lower() != path.suffix.lower():
         raise ProgramError(
             "programs.patch.suffix",
@@ -227,23 +264,24 @@ def _write(output, written, beside, path):
     _write_whole(output, written)
 
 
-def _write_whole(path, data):
+def _write_whole(path: Path, data: bytes) -> None:
     try:
         write_whole(path, data)
     except OSError as error:
         raise ProgramError.of(cannot_be_written(shown(path), error)) from None
 
 
-def _work(program, changes, source, module):
+def _work(program: Program, changes: Iterable[Json], source: Source, module: Language) -> Work:
     """The changes sorted by statements. Raises ProgramError where they are not possible."""
     motions = program.motions
-    lines = {}
-    before, ended = [], -1
+    lines: dict[int, list[int]] = {}
+    before: list[int] = []
+    ended = -1
     for i, motion in enumerate(motions):
         lines.setdefault(motion.line, []).append(i)
         before.append(ended)
         ended = ended if motion.aux else i
-    named = {}
+    named: dict[int, dict[str, float]] = {}
     for change in changes:
         _merge(named, change, program, lines)
     if not any(named.values()):
@@ -260,10 +298,16 @@ def _work(program, changes, source, module):
     return work
 
 
-def _merge(named, change, program, lines):
-    def wrong(code, text, /, **arguments):
+def _merge(
+    named: dict[int, dict[str, float]],
+    change: Json,
+    program: Program,
+    lines: Mapping[int, list[int]],
+) -> None:
+    def wrong(code: str, text: str, /, **arguments: object) -> Exception:
         if "where" in change:
-            return ProgramError.at(*change["where"], code, text, **arguments)
+            file, line = change["where"]
+            return ProgramError.at(file, line, code, text, **arguments)
         return ProgramError(code, text, **arguments).within(
             "programs.in_file", "{file}: ", file=program.file
         )
@@ -283,8 +327,8 @@ def _merge(named, change, program, lines):
                 most=most,
             )
     if change.get("line") is not None:
-        members = lines.get(change["line"], [])
-        if not members:
+        there = lines.get(change["line"], [])
+        if not there:
             raise wrong(
                 "programs.patch.no_motion_in_line",
                 "no motion is in line {number} of {program}",
@@ -292,7 +336,7 @@ def _merge(named, change, program, lines):
                 program=program.file,
             )
         # An arc's auxiliary point has a place of its own, and the speed of its end.
-        members = [(i, values) for i in members]
+        members = [(i, values) for i in there]
     else:
         i = change.get("index")
         if i is None or not 0 <= i < len(motions):
@@ -326,7 +370,7 @@ def _merge(named, change, program, lines):
                 )
 
 
-def _agreed(work, line, members, named, key):
+def _agreed(work: Work, line: int, members: Sequence[int], named: Named, key: str) -> float | None:
     """The value all motions of a statement are given; None: none of them any."""
     values = {named.get(i, {}).get(key) for i in members}
     if values == {None} or not members:
@@ -360,16 +404,16 @@ def _agreed(work, line, members, named, key):
     return values.pop()
 
 
-def _has(work, line, key, value):
+def _has(work: Work, line: int, key: str, value: float) -> bool:
     """Whether all motions of a line have the value already: nothing is to be written then."""
     ends = [work.program.motions[i] for i in work.lines[line]]
     return all(getattr(m, key) == value for m in ends)
 
 
-def _shifts(work, line, named, source, module):
+def _shifts(work: Work, line: int, named: Named, source: Source, module: Language) -> None:
     """The displacements of a statement's targets."""
     motions, keys = work.program.motions, COLUMNS[2:]
-    targets = {}
+    targets: dict[int, list[int]] = {}
     for i in work.lines[line]:
         derived = module.derived(source, line)
         if not motions[i].aux or not derived:
@@ -398,18 +442,21 @@ def _shifts(work, line, named, source, module):
         *base, tool_z = given.pop()
         shift = Shift(np.array(base), tool_z, members)
         for i in members:
-            if motions[i].pose is None:
+            pose = motions[i].pose
+            if pose is None:
                 raise work.refuse(
                     line,
                     "programs.patch.unmoved_without_pose",
                     "motion {motion} has no pose that is known; it is not moved",
                     motion=i,
                 )
-            work.steps[i] = shift.base + tool_z * motions[i].pose[:3, 2]
+            work.steps[i] = shift.base + tool_z * pose[:3, 2]
         work.shifts.setdefault(line, {})[target] = shift
 
 
-def _verify(program, again, work, source, module):
+def _verify(
+    program: Program, again: Program, work: Work, source: Source, module: Language
+) -> list[dict[str, Any]]:
     """Compares what was written with what was asked for. Raises ProgramError."""
     old, new = program.motions, again.motions
     problems = Counter(problem.message for problem in again.problems)
@@ -436,7 +483,11 @@ def _verify(program, again, work, source, module):
         if (a.pose is None) != (b.pose is None):
             raise _other(i, a, ITS["pose"])
         shifted = bool(step.any())
-        if a.pose is not None and not (a.aux and module.derived(source, a.line)):
+        if (
+            a.pose is not None
+            and b.pose is not None
+            and not (a.aux and module.derived(source, a.line))
+        ):
             rounding = module.ROUNDING_MM if shifted else 0.0
             error = np.abs(b.pose[:3, 3] - a.pose[:3, 3] - step).max()
             if error > rounding + UNCHANGED * (1.0 + np.abs(a.pose[:3, 3]).max()):
@@ -457,19 +508,31 @@ def _verify(program, again, work, source, module):
             if turn > (1e-6 if shifted else UNCHANGED):
                 raise _other(i, a, ITS["orientation"])
         if a.line in work.speeds or a.line in work.forces or shifted:
-            moved = None if b.pose is None else (b.pose[:3, 3] - a.pose[:3, 3]).tolist()
+            moved = (
+                None
+                if b.pose is None or a.pose is None
+                else (b.pose[:3, 3] - a.pose[:3, 3]).tolist()
+            )
             row = {"index": i, "line": a.line, "speed_mm_s": b.speed_mm_s, "force_N": b.force_N}
             report.append({**row, "offset_mm": moved})
     return report
 
 
-def _same_words(i, a, b):
+def _same_words(i: int, a: Motion, b: Motion) -> None:
     for key in ("kind", "tool", "base", "aux"):
         if getattr(a, key) != getattr(b, key):
             raise _other(i, a, ITS[key])
 
 
-def _close(i, motion, what, asked, found, rounding, work):
+def _close(
+    i: int,
+    motion: Motion,
+    what: str,
+    asked: float | None,
+    found: float | None,
+    rounding: float,
+    work: Work,
+) -> None:
     if asked is None or found is None:
         if asked is not found:
             raise _other(i, motion, ITS[what])
@@ -487,7 +550,7 @@ def _close(i, motion, what, asked, found, rounding, work):
         raise _other(i, motion, told)
 
 
-def _other(i, motion, what):
+def _other(i: int, motion: Motion, what: Fact) -> ProgramError:
     return ProgramError.at(
         motion.file,
         motion.line,

@@ -1,13 +1,20 @@
 """Writes changes back into ABB RAPID: \\V or the speed of an instruction, Offs() and RelTool()."""
 
+from __future__ import annotations
+
 import functools
 import re
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from ..readers.rapid.data import SPEEDS
-from ..readers.rapid.motion import spec_of
+from ...base.kinds import Floats, known
+from ..languages.rapid.data import SPEEDS
+from ..languages.rapid.motion import spec_of
 from .text import decimal, decimals, moved
+
+if TYPE_CHECKING:
+    from .text import Shift, Source, Work
 
 ROUNDING_MM = 6e-5
 SPEED_DIGITS = 6  # of mm/s
@@ -19,16 +26,18 @@ POSITION = re.compile(
 )
 DATA = r"\bspeeddata\s+{name}\s*:=\s*\[([^\[\]]*)\]"
 
+Arguments: TypeAlias = "list[tuple[str | None, int, int]]"  # option, begin, end
 
-def derived(source, line):
+
+def derived(source: Source, line: int) -> bool:
     return False
 
 
-def rounding_mm_s(source, line):
+def rounding_mm_s(source: Source, line: int) -> float:
     return 1e-6
 
 
-def edit(source, work):
+def edit(source: Source, work: Work) -> None:
     work.no_force()
     # Comments and strings blanked, place by place.
     text = HIDDEN.sub(_blank, source.text)
@@ -38,12 +47,12 @@ def edit(source, work):
         _move(source, text, work, line, target, shift)
 
 
-def _blank(match):
+def _blank(match: re.Match[str]) -> str:
     size = len(match.group())
     return '"' + " " * (size - 2) + '"' if match.group()[0] == '"' else " " * size
 
 
-def _instruction(text, source, work, line):
+def _instruction(text: str, source: Source, work: Work, line: int) -> tuple[str, Any, Arguments]:
     """(word, spec, arguments) of a line's motion; arguments as (option or None, begin, end), begin
     and end of a switch None."""
     begin, end = source.span(line)
@@ -63,8 +72,9 @@ def _instruction(text, source, work, line):
     return word, spec_of(word), _arguments(text, found[0].end())
 
 
-def _arguments(text, at):
-    rows, depth, first, option = [], 0, at, False
+def _arguments(text: str, at: int) -> Arguments:
+    rows: list[tuple[bool, int, int]] = []
+    depth, first, option = 0, at, False
     while True:
         letter = text[at]
         if depth == 0 and letter in ",\\;":
@@ -74,11 +84,11 @@ def _arguments(text, at):
             option, first = letter == "\\", at + 1
         depth += (letter in "([{") - (letter in ")]}")
         at += 1
-    result = []
+    result: Arguments = []
     for option, begin, end in rows:
         name = None
         if option:
-            match = re.compile(r"\s*(\w+)\s*(?::=)?").match(text, begin, end)
+            match = known(re.compile(r"\s*(\w+)\s*(?::=)?").match(text, begin, end))
             name, begin = match.group(1).lower(), match.end()
         piece = text[begin:end]
         if piece.strip() or option:
@@ -87,7 +97,7 @@ def _arguments(text, at):
     return result
 
 
-def _speed(source, text, work, line, value):
+def _speed(source: Source, text: str, work: Work, line: int, value: float) -> None:
     word, spec, arguments = _instruction(text, source, work, line)
     number = decimal(value, SPEED_DIGITS)
     options = {name: (begin, end) for name, begin, end in arguments if name}
@@ -124,11 +134,11 @@ def _speed(source, text, work, line, value):
 
 
 @functools.lru_cache(maxsize=16)
-def _data(text, name):
+def _data(text: str, name: str) -> re.Match[str] | None:
     return re.search(DATA.format(name=re.escape(name)), text, re.IGNORECASE)
 
 
-def _move(source, text, work, line, target, shift):
+def _move(source: Source, text: str, work: Work, line: int, target: int, shift: Shift) -> None:
     _, spec, arguments = _instruction(text, source, work, line)
     rows = [(begin, end) for name, begin, end in arguments if name is None]
     begin, end = rows[spec[3] + target]
@@ -164,5 +174,5 @@ def _move(source, text, work, line, target, shift):
         source.replace(begin, end, f"RelTool({now},{_numbers([0.0, 0.0, shift.tool_z])})")
 
 
-def _numbers(values):
-    return ",".join(decimal(value, 6) for value in np.round(values, 6))
+def _numbers(values: Floats | list[float]) -> str:
+    return ",".join(decimal(value, 6) for value in np.round(np.asarray(values), 6))

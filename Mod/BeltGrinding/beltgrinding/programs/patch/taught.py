@@ -1,14 +1,22 @@
 """Writes changes back into Fanuc TP (.ls) and Yaskawa INFORM (.jbi): speeds in the instructions,
 offsets in the taught positions, if no other motion uses them. Lines keep their numbers."""
 
+from __future__ import annotations
+
 import re
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from ..readers.fanuc import localized
-from ..readers.fanuc.reader import MM_PER_S as ENGLISH
-from ..readers.taught import DIGITS
+from ...base.kinds import Floats, known
+from ..languages.fanuc import localized
+from ..languages.fanuc.motions import MM_PER_S as ENGLISH
+from ..languages.taught import DIGITS
 from .text import decimal, decimals, moved
+
+if TYPE_CHECKING:
+    from .text import Shift, Source, Work
 
 MM_PER_S = {**ENGLISH, **{own: ENGLISH[unit] for own, unit in localized.MM_PER_S.items()}}
 ROUNDING_MM = 5.1e-4  # positions have three decimals
@@ -25,13 +33,15 @@ MOVE = re.compile(r"\s*(?:MOV[LCS]|IMOV)\s+(C|P)(\d+)(?=\s|$)")
 V = re.compile(r"(\s)V=(\S*)")
 ROW = re.compile(rf"\s*C(\d+)\s*=\s*({DIGITS})\s*,\s*({DIGITS})\s*,\s*({DIGITS})\s*,")
 
+Used: TypeAlias = "Mapping[int, list[tuple[int, int]]]"  # of positions: (line, target)
 
-def derived(source, line):
+
+def derived(source: Source, line: int) -> bool:
     """Half-way points of arcs that are taught one point a statement."""
     return bool(re.match(r"\s*(?:\d*\s*:\s*A\s|MOVC\b)", source.line(line)))
 
 
-def rounding_mm_s(source, line):
+def rounding_mm_s(source: Source, line: int) -> float:
     begin, end = source.span(line)
     if re.match(r"\s*\w*MOV", source.text[begin:end]):
         return 0.05
@@ -39,7 +49,7 @@ def rounding_mm_s(source, line):
     return 0.5 * 10.0 ** -_digits(number, unit) * MM_PER_S.get(unit, 1.0) * 1.0001
 
 
-def edit(source, work):
+def edit(source: Source, work: Work) -> None:
     work.no_force()
     fanuc = work.program.language == "Fanuc TP"
     for line, value in work.speeds.items():
@@ -48,11 +58,11 @@ def edit(source, work):
         (_move_positions if fanuc else _move_rows)(source, work)
 
 
-def _digits(number, unit):
+def _digits(number: str, unit: str) -> int:
     return max(LEAST_DECIMALS.get(unit, 0), 0 if number.startswith("R") else decimals(number))
 
 
-def _feed(source, line):
+def _feed(source: Source, line: int) -> tuple[str, str, re.Match[str] | None]:
     """(number, unit, match) of a statement's speed; unit "" where it has none."""
     begin = source.span(line)[0]
     stop = source.text.find(";", begin)
@@ -67,9 +77,9 @@ def _feed(source, line):
     return (found.group(1), found.group(3), found) if found else ("", "", None)
 
 
-def _set_feed(source, work, line, value):
+def _set_feed(source: Source, work: Work, line: int, value: float) -> None:
     number, unit, found = _feed(source, line)
-    if unit in ("%", "deg/sec", "deg/sek", ""):
+    if found is None or unit in ("%", "deg/sec", "deg/sek", ""):
         raise work.refuse(
             line,
             "programs.patch.no_speed_to_change",
@@ -87,10 +97,10 @@ def _set_feed(source, work, line, value):
             unit=new,
         )
     source.replace(found.start(1), found.end(1), text)
-    source.replace(*found.span(3), new)
+    source.replace(found.start(3), found.end(3), new)
 
 
-def _set_v(source, work, line, value):
+def _set_v(source: Source, work: Work, line: int, value: float) -> None:
     found = V.search(source.line(line))
     begin = source.span(line)[0]
     if re.search(r"\sV[RE]=", source.line(line)):
@@ -119,7 +129,7 @@ def _set_v(source, work, line, value):
     source.replace(begin + position.end(), begin + position.end(), f" V={text}")
 
 
-def _shared(work, used, position, shift, mine):
+def _shared(work: Work, used: Used, position: int, shift: Shift, mine: int) -> Floats:
     """Raises unless all statements that use a position move it by the same."""
     step = work.in_base(shift)
     for line, target in used[position]:
@@ -135,15 +145,18 @@ def _shared(work, used, position, shift, mine):
                 name=name,
                 other=line,
             )
-    return step
+    return known(step)
 
 
-def _move_positions(source, work):
+def _move_positions(source: Source, work: Work) -> None:
     text = source.text
-    mn = re.search(r"^\s*/MN\b", text, re.MULTILINE)
-    pos = re.search(r"^\s*/POS\b", text, re.MULTILINE)
-    used, own, line = {}, {}, 1
-    for match in re.finditer(rf"(?<![A-Z])P\s*{INDEX}", text[: pos.start()]):
+    mn = known(re.search(r"^\s*/MN\b", text, re.MULTILINE))
+    pos = re.search(r"^\s*/POS\b", text, re.MULTILINE)  # None: all targets are registers'
+    stop = pos.start() if pos else len(text)
+    used: dict[int, list[tuple[int, int]]] = {}
+    own: dict[int, list[int]] = {}
+    line = 1
+    for match in re.finditer(rf"(?<![A-Z])P\s*{INDEX}", text[:stop]):
         if match.start() < mn.end():
             continue
         n = re.match(r"\s*(\d+)\s*(?::|$)", match.group(1))
@@ -159,26 +172,26 @@ def _move_positions(source, work):
                 "P[{index}] may be any position; none is moved",
                 index=match.group(1),
             )
-        target = own.setdefault(statement, [])
-        used.setdefault(int(n.group(1)), []).append((statement, len(target)))
-        target.append(int(n.group(1)))
-    blocks = {int(m.group(1)): m for m in BLOCK.finditer(text, pos.end())}
+        targets = own.setdefault(statement, [])
+        used.setdefault(int(n.group(1)), []).append((statement, len(targets)))
+        targets.append(int(n.group(1)))
+    blocks = {int(m.group(1)): m for m in BLOCK.finditer(text, stop)}
     done = set()
     for line, target, shift in work.targets():
         begin = source.span(line)[0]
-        statement = text[begin : text.find(";", begin)]
-        if re.search(r"\bINC\b", statement):
+        if re.search(r"\bINC\b", text[begin : text.find(";", begin)]):
             raise work.refuse(line, "programs.patch.inc", "INC is relative to the motion before it")
-        n = own.get(line, [])[target] if target < len(own.get(line, [])) else None
-        if n not in blocks:
+        mine = own.get(line, [])
+        number = mine[target] if target < len(mine) else -1
+        if number not in blocks:
             raise work.refuse(
                 line, "programs.patch.no_position", "its target is no position of this program"
             )
-        if n in done:  # and compared with all that use it
+        if number in done:  # and compared with all that use it
             continue
-        done.add(n)
-        step = _shared(work, used, n, shift, line)
-        body = blocks[n].span(2)
+        done.add(number)
+        step = _shared(work, used, number, shift, line)
+        body = blocks[number].span(2)
         first = text.find("GP1", *body)
         places = {
             m.group(1): m for m in reversed(list(PLACE.finditer(text, max(first, 0), body[1])))
@@ -186,17 +199,18 @@ def _move_positions(source, work):
         for name, value in zip("XYZ", step):
             if value:
                 place = places[name]
-                number = moved(place.group(3), value, 3)
+                new = moved(place.group(3), value, 3)
                 blanks = place.group(2)
                 # The number grows or shrinks at the cost of the blanks in front of it.
-                room = len(blanks) + len(place.group(3)) - len(number)
+                room = len(blanks) + len(place.group(3)) - len(new)
                 equals = blanks.rstrip()
                 blanks = equals.ljust(max(room, len(equals)))
-                source.replace(place.start(2), place.end(3), blanks + number)
+                source.replace(place.start(2), place.end(3), blanks + new)
 
 
-def _move_rows(source, work):
-    rows, used = {}, {}
+def _move_rows(source: Source, work: Work) -> None:
+    rows: dict[int, tuple[int, re.Match[str]]] = {}
+    used: dict[int, list[tuple[int, int]]] = {}
     for line in range(1, len(source) + 1):
         row = ROW.match(source.line(line))
         if row:

@@ -1,11 +1,20 @@
 """Writes changes back into URScript: v= of a motion, pose_trans() around a target."""
 
+from __future__ import annotations
+
 import re
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from ..readers.urscript.reader import COMMENT, PARAMETERS
+from ...base.kinds import Floats
+from ..languages.urscript.motion import PARAMETERS
+from ..languages.urscript.reader import COMMENT
 from .text import decimal, moved
+
+if TYPE_CHECKING:
+    from .text import Shift, Source, Work
 
 ROUNDING_MM = 6e-5
 CALL = re.compile(r"\b(move[jlpc])\s*\(")
@@ -15,16 +24,18 @@ NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*$")
 SPEED_DIGITS = 9  # of m/s
 PLACE_DIGITS = 7  # of m
 
+Arguments: TypeAlias = "list[tuple[str | None, int, int]]"  # keyword, begin, end
 
-def derived(source, line):
+
+def derived(source: Source, line: int) -> bool:
     return False
 
 
-def rounding_mm_s(source, line):
+def rounding_mm_s(source: Source, line: int) -> float:
     return 1e-6
 
 
-def edit(source, work):
+def edit(source: Source, work: Work) -> None:
     work.no_force()
     for line, value in work.speeds.items():
         name, arguments, end = _call(source, work, line)
@@ -43,12 +54,12 @@ def edit(source, work):
         _move(source, work, line, shift, *given[PARAMETERS[name][target]])
 
 
-def _number(text):
+def _number(text: str) -> float | None:
     match = NUMBER.match(text)
     return float(match.group(1)) if match else None
 
 
-def _call(source, work, line):
+def _call(source: Source, work: Work, line: int) -> tuple[str, Arguments, int]:
     """(name, [(keyword or None, begin, end)], end of the last) of a line's motion."""
     begin, _ = source.span(line)
     code = COMMENT.sub(lambda m: m.group(1) or "", source.line(line))
@@ -59,7 +70,8 @@ def _call(source, work, line):
             "programs.patch.not_one_motion",
             "the line does not hold one motion by name; change it by hand",
         )
-    arguments, depth, first = [], 0, found[0].end()
+    arguments: Arguments = []
+    depth, first = 0, found[0].end()
     for at in range(first, len(code)):
         letter = code[at]
         if depth == 0 and letter in ",)":
@@ -68,7 +80,7 @@ def _call(source, work, line):
             inner = first + (keyword.end() if keyword else 0)
             inner += len(code[inner:at]) - len(code[inner:at].lstrip())
             stop = inner + len(code[inner:at].rstrip())
-            arguments.append((keyword and keyword.group(1), begin + inner, begin + stop))
+            arguments.append((keyword.group(1) if keyword else None, begin + inner, begin + stop))
             if letter == ")":
                 return found[0].group(1), arguments, begin + stop
             first = at + 1
@@ -78,7 +90,7 @@ def _call(source, work, line):
     )
 
 
-def _given(names, arguments):
+def _given(names: Sequence[str], arguments: Arguments) -> dict[str, tuple[int, int]]:
     result = {}
     for k, (keyword, begin, end) in enumerate(arguments):
         name = names[k] if keyword is None else keyword
@@ -86,7 +98,7 @@ def _given(names, arguments):
     return result
 
 
-def _move(source, work, line, shift, begin, end):
+def _move(source: Source, work: Work, line: int, shift: Shift, begin: int, end: int) -> None:
     text = source.text[begin:end]
     step = work.in_base(shift)
     literal = IN_FRAME.match(text) if _in_frame(work, shift) else LITERAL.match(text)
@@ -94,8 +106,8 @@ def _move(source, work, line, shift, begin, end):
         first = begin + literal.start(1) + (literal.group(1).find("[") + 1)
         edits = _literal(literal.group(1).split("[")[-1].rstrip("]"), first, step)
         if edits is not None:
-            for place in edits:
-                source.replace(*place)
+            for edit_ in edits:
+                source.replace(*edit_)
             return
     step = work.in_tool(shift)
     if step is None:
@@ -108,7 +120,7 @@ def _move(source, work, line, shift, begin, end):
     source.replace(begin, end, f"pose_trans({text}, p[{place}, 0.0, 0.0, 0.0])")
 
 
-def _literal(text, first, step):
+def _literal(text: str, first: int, step: Floats) -> list[tuple[int, int, str]] | None:
     """(begin, end, number) of each coordinate to be changed; None: they are no plain numbers."""
     edits = []
     for value, part in zip(step, text.split(",")):
@@ -122,5 +134,5 @@ def _literal(text, first, step):
     return edits
 
 
-def _in_frame(work, shift):
+def _in_frame(work: Work, shift: Shift) -> bool:
     return work.program.motions[shift.motions[0]].base.startswith("ref_frame")

@@ -2,13 +2,18 @@
 that nobody has asked for.
 """
 
+from __future__ import annotations
+
 import re
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Optional
+from typing import Optional, TypeAlias
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ...base.frames import from_abc, from_quaternions, in_words, to_quaternions
+from ...base.kinds import Floats
 from ..program import Fact, ProgramError
 from .text import printable
 
@@ -26,6 +31,10 @@ NOT_TOLD = {
     "base": Fact("programs.writers.base_not_told", "a base of which nothing is told"),
 }
 
+# A frame for all, or by its words: its name, its number, its 4 x 4 in mm, ``AS_KNOWN``, None.
+One: TypeAlias = "str | int | ArrayLike | None"
+Given: TypeAlias = "One | Mapping[str, One]"
+
 
 @dataclass
 class Frame:
@@ -33,16 +42,16 @@ class Frame:
 
     what: str  # tool, base
     words: str  # what the source of the poses calls it; may be empty
-    pose: Optional[np.ndarray]  # 4 x 4 in mm, None: not known
+    pose: Optional[Floats]  # 4 x 4 in mm, None: not known
     name: Optional[str] = None  # of the controller's own frame that is to be set
     given: bool = False  # the numbers of ``pose`` are to be set
 
     @property
-    def left_out(self):
+    def left_out(self) -> bool:
         return self.name is None and not self.given
 
     @property
-    def told(self):
+    def told(self) -> str:
         """What a comment says of it: ASCII in one line."""
         numbers = "" if self.pose is None else in_words(self.pose)
         return printable(self.words) or numbers or str(NOT_TOLD[self.what])
@@ -52,17 +61,18 @@ class Frames:
     """Tools or bases by their words. ``given``: as ``write_program`` takes them; ``told``: {words: 4 x 4 in mm}
     of those that the program tells."""
 
-    def __init__(self, given, what, told):
+    def __init__(self, given: Given, what: str, told: Mapping[str, Floats]) -> None:
         self.given, self.what, self.told = given, what, told
-        self.rows, self.numbers = [], {}
+        self.rows: list[Frame] = []
+        self.numbers: dict[str, int] = {}
 
-    def row(self, words):
+    def row(self, words: str) -> int:
         if words not in self.numbers:
             self.numbers[words] = len(self.rows)
             self.rows.append(self.frame(words))
         return self.numbers[words]
 
-    def frame(self, words):
+    def frame(self, words: str) -> Frame:
         given = self.given.get(words) if isinstance(self.given, dict) else self.given
         known = self.told.get(words)
         if known is None:
@@ -93,7 +103,7 @@ class Frames:
         return Frame(self.what, words, pose, given=True)
 
 
-def checked(frames):
+def checked(frames: Floats) -> Floats:
     """Quaternions of the poses. Raises ProgramError for what is no rigid pose."""
     if not np.isfinite(frames).all():
         raise ProgramError("programs.writers.not_finite", "a pose is not finite")
@@ -109,7 +119,7 @@ def checked(frames):
     return quaternions
 
 
-def frame_in_words(words):
+def frame_in_words(words: str) -> Floats | None:
     """4 x 4 in mm that the words of a Motion's tool or base tell, to their digits, or None."""
     found = WORDS.search(words)
     if found:
@@ -117,7 +127,7 @@ def frame_in_words(words):
         return from_abc(values[:3], values[3:])
     found = METRES.search(words)
     if found:
-        from ..readers.urscript.expression import pose_of
+        from ..languages.urscript.pose import pose_of
 
         frame = pose_of([float(v) for v in found.groups()]).frame.copy()
         frame[:3, 3] *= 1000.0
@@ -125,7 +135,7 @@ def frame_in_words(words):
     return None
 
 
-def words_of_cell(base_from_robot, flange_from_tcp):
+def words_of_cell(base_from_robot: Floats, flange_from_tcp: Floats) -> dict[str, str]:
     """dict of a ``Motion``'s tool and base: the frames of the programs in a cell (4 x 4, mm), in words."""
     base = in_words(np.linalg.inv(base_from_robot))
     return {
@@ -134,7 +144,7 @@ def words_of_cell(base_from_robot, flange_from_tcp):
     }
 
 
-def check_all_set(frames, language):
+def check_all_set(frames: Sequence[Frame], language: str) -> None:
     """Raises ProgramError where a program that changes between frames would leave one to the controller,
     which has one in force: the poses in the others would be ground in it.
     """
@@ -149,7 +159,7 @@ def check_all_set(frames, language):
         )
 
 
-def taken_for_granted(frames):
+def taken_for_granted(frames: Iterable[Frame]) -> list[Fact]:
     """Facts that tell which frames the program leaves to the controller; frames: of which it sets none."""
     facts = []
     for frame in frames:
@@ -172,7 +182,7 @@ def taken_for_granted(frames):
     return facts
 
 
-def undeclared(frame, name):
+def undeclared(frame: Frame, name: str) -> Fact:
     """The Fact that a program uses a name which must exist on the controller."""
     return Fact(
         "programs.writers.undeclared",

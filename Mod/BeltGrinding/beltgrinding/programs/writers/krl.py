@@ -1,21 +1,30 @@
 """KUKA KRL as text: a module without data list. After KUKA's System Software operating and
 programming manuals; names of at most 24 characters."""
 
+from __future__ import annotations
+
 import re
+from typing import TYPE_CHECKING
 
 from ...base.frames import to_abc
+from ...base.kinds import Floats, known
 from ..patch.text import decimal
 from ..program import ProgramError
 from .frames import check_all_set, taken_for_granted
 from .text import DEGREE_DIGITS, MM_DIGITS, SPEED_DIGITS, rounded
 
+if TYPE_CHECKING:
+    from .frames import Frame
+    from .sheet import Sheet
+
+ZONE_DIGITS = 3  # of mm
 NAME = re.compile(r"[A-Za-z]\w{0,23}$", re.ASCII)
 POSE = ",".join([f"{k} %.{MM_DIGITS}f" for k in "XYZ"] + [f"{k} %.{DEGREE_DIGITS}f" for k in "ABC"])
 POSE = "{" + POSE + "}"
 VARIABLES = {"tool": "$TOOL", "base": "$BASE"}
 
 
-def text(sheet):
+def text(sheet: Sheet) -> bytes:
     """The bytes of a .src file."""
     if not NAME.match(sheet.name):
         raise ProgramError(
@@ -48,10 +57,10 @@ def text(sheet):
         "GLOBAL INTERRUPT DECL 3 WHEN $STOPMESS==TRUE DO IR_STOPM ( )",
         "INTERRUPT ON 3",
         "BAS (#INITMOV,0 )",
-        f"$APO.CDIS={decimal(sheet.blend_mm, 3)}",
+        f"$APO.CDIS={decimal(sheet.blend_mm, ZONE_DIGITS)}",
         ";ENDFOLD (INI)",
     ]
-    blend = " C_DIS" if sheet.blend_mm > 0.0 else ""
+    blend = decimal(sheet.blend_mm, ZONE_DIGITS)
     tool = base = speed = force = None
     spline = False
     for k, step in enumerate(sheet.steps):
@@ -67,14 +76,22 @@ def text(sheet):
         if step.force != force:
             force = step.force
             head.append("; force as set" if force is None else f"; force {force:g} N")
+        last = k + 1 == len(sheet.steps)
+        rounds = ""
+        if step.kind in ("LIN", "CIRC") and not last:
+            rounds = decimal(sheet.blend_mm if step.zone is None else step.zone, ZONE_DIGITS)
+            rounds = "" if float(rounds) == 0.0 else rounds
+        if rounds not in ("", blend):
+            blend = rounds
+            head.append(f"$APO.CDIS={blend}")
         wanted = speed if step.kind == "PTP" else step.speed or sheet.speed_mm_s
         if spline and (step.kind != "SPL" or any(not row.startswith(";") for row in head)):
             lines.append("ENDSPLINE")
             spline = False
         own = ""
-        if wanted != speed and spline:
+        if wanted is not None and wanted != speed and spline:
             own = f" WITH $VEL.CP={decimal(wanted / 1000.0, SPEED_DIGITS + 3)}"
-        elif wanted != speed:
+        elif wanted is not None and wanted != speed:
             speed = wanted
             head.append(f"$VEL.CP={decimal(speed / 1000.0, SPEED_DIGITS + 3)}")
         lines += head
@@ -83,25 +100,23 @@ def text(sheet):
             spline = True
         target = places[step.pose]
         if step.kind == "CIRC":
-            target = f"{places[step.aux]},{target}"
-        last = k + 1 == len(sheet.steps)
-        rounds = blend if step.kind in ("LIN", "CIRC") and not last else ""
-        lines.append(f"{step.kind} {target}{own}{rounds}")
+            target = f"{places[known(step.aux)]},{target}"
+        lines.append(f"{step.kind} {target}{own}{' C_DIS' if rounds else ''}")
     lines += ["ENDSPLINE"] if spline else []
     lines += ["END", ""]
     return "\r\n".join(lines).encode("ascii")
 
 
-def _pose(frame):
+def _pose(frame: Floats) -> str:
     place = rounded(frame[:3, 3], MM_DIGITS).tolist()
     return POSE % (*place, *rounded(to_abc(frame), DEGREE_DIGITS).tolist())
 
 
-def _frame(frame):
+def _frame(frame: Floats) -> str:
     return "{FRAME: " + _pose(frame)[1:]
 
 
-def _asked_for(frame):
+def _asked_for(frame: Frame) -> list[str]:
     """Comments: a frame that the program does not set."""
     variable = VARIABLES[frame.what]
     lines = [
@@ -109,22 +124,22 @@ def _asked_for(frame):
         f"; keeps it. The poses mean: {frame.told}",
     ]
     if frame.pose is not None:
-        lines.append(f";   {variable}={_frame(frame.pose)}")
+        lines.append(f";   {variable}={_frame(known(frame.pose))}")
     return lines
 
 
-def _setting(frame):
+def _setting(frame: Frame) -> list[str]:
     """Statements that set a frame; none where it is left out."""
     if frame.left_out:
         return []
     comment = f"; {frame.what} {frame.told}"
     if frame.given:
-        return [comment, f"{VARIABLES[frame.what]}={_frame(frame.pose)}"]
-    if not re.fullmatch(r"\d{1,3}", frame.name, re.ASCII):
+        return [comment, f"{VARIABLES[frame.what]}={_frame(known(frame.pose))}"]
+    if not re.fullmatch(r"\d{1,3}", known(frame.name), re.ASCII):
         raise ProgramError(
             "programs.writers.krl_number",
             "'{name}': KRL's frames have numbers; give the n of TOOL_DATA[n] or BASE_DATA[n], or the "
             "frame's own numbers",
             name=frame.name,
         )
-    return [comment, f"BAS (#{frame.what.upper()},{int(frame.name)} )"]
+    return [comment, f"BAS (#{frame.what.upper()},{int(known(frame.name))} )"]

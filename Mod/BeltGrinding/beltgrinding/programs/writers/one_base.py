@@ -1,17 +1,26 @@
 """The poses of a program that changes between bases in one of them, for languages that have but one, and where one
 is set for all."""
 
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...base.frames import in_words
+from ...base.kinds import Floats, known
 from .. import one_frame
 from ..program import Fact, ProgramError
 from .frames import AS_KNOWN, NOT_TOLD, WHAT, frame_in_words
 
+if TYPE_CHECKING:
+    from ..program import Motion, Program
+    from .frames import Given
 
-def in_one_base(program, given, language):
+
+def in_one_base(program: Program, given: Given, language: str) -> tuple[list[Motion], list[Fact]]:
     """(motions, Facts): the motions of a Program with all poses in the base that most is ground in, each of
     its own tool.
 
@@ -24,18 +33,19 @@ def in_one_base(program, given, language):
     if len(used) < 2:
         return program.motions, []
     chosen, _ = one_frame.reference(program)
-    known = {words: _numbers(program, given, words) for words in used}
-    found, counts = [], dict.fromkeys(used, 0)
+    numbers = {words: _numbers(program, given, words) for words in used}
+    found: list[Motion] = []
+    counts = dict.fromkeys(used, 0)
     for motion in program.motions:
         if motion.pose is not None and motion.base != chosen:
             counts[motion.base] += not motion.aux
-            way = _way(known, program.held, chosen, motion.base, language)
+            way = _way(numbers, program.held, chosen, motion.base, language)
             motion = replace(motion, pose=way @ motion.pose, base=chosen)
         found.append(motion)
     facts = []
     for words in used:
         if words != chosen:
-            pose = _way(known, program.held, chosen, words, language)
+            pose = _way(numbers, program.held, chosen, words, language)
             facts.append(
                 Fact(
                     "programs.writers.in_one_base",
@@ -50,7 +60,7 @@ def in_one_base(program, given, language):
     return found, facts
 
 
-def one_for_all(program, given, what):
+def one_for_all(program: Program, given: Given, what: str) -> list[Fact]:
     """[Fact] where one tool or base (``what``) is set for the poses of several."""
     used = {getattr(m, what): 0 for m in program.motions if m.pose is not None}
     as_known = isinstance(given, str) and given == AS_KNOWN
@@ -67,13 +77,13 @@ def one_for_all(program, given, what):
     ]
 
 
-def all_known(program, given):
+def all_known(program: Program, given: Given) -> bool:
     """Whether it is known where all bases of a Program lie."""
     used = {m.base for m in program.motions if m.pose is not None}
     return all(_numbers(program, given, words) is not None for words in used)
 
 
-def comments(facts):
+def comments(facts: Iterable[Fact]) -> list[str]:
     """What the program's head says of the facts of ``in_one_base``."""
     lines = []
     for fact in facts:
@@ -85,7 +95,7 @@ def comments(facts):
     return lines
 
 
-def _numbers(program, given, words):
+def _numbers(program: Program, given: Given, words: str) -> Floats | None:
     """4 x 4 robot_from_base in mm, or None."""
     told = given.get(words) if isinstance(given, dict) else None
     if told is not None and not isinstance(told, (str, int)):
@@ -95,16 +105,23 @@ def _numbers(program, given, words):
     return program.base_frames.get(words, frame_in_words(words))
 
 
-def _way(known, held, chosen, words, language):
+def _way(
+    frames: Mapping[str, Floats | None],
+    held: Collection[str],
+    chosen: str,
+    words: str,
+    language: str,
+) -> Floats:
     """4 x 4 from a base's poses to the chosen one's."""
-    for one in (chosen, words):
-        if known[one] is None:
+    there, here = frames[chosen], frames[words]
+    for one, frame in ((chosen, there), (words, here)):
+        if frame is None:
             raise ProgramError(
                 "programs.writers.bases_not_known",
                 "the program changes between bases ({names}), and {language} programs are written with one, but "
                 "where the base '{base}' lies is not known; give its numbers in a values file beside the "
                 "program, or write one program each",
-                names=", ".join(f"'{name or NOT_TOLD['base']}'" for name in list(known)[:5]),
+                names=", ".join(f"'{name or NOT_TOLD['base']}'" for name in list(frames)[:5]),
                 language=language,
                 base=one or NOT_TOLD["base"],
             )
@@ -117,4 +134,4 @@ def _way(known, held, chosen, words, language):
             other=chosen if words in held else words,
             language=language,
         )
-    return np.linalg.inv(known[chosen]) @ known[words]
+    return np.linalg.inv(known(there)) @ known(here)

@@ -1,17 +1,25 @@
 """ABB RAPID as text: a module with tools, work objects and a PROC main. After ABB's Technical
 reference manual, RAPID instructions, functions and data types; names of at most 32 characters."""
 
+from __future__ import annotations
+
 import re
+from typing import TYPE_CHECKING
 
 from ...base.frames import to_quaternions
+from ...base.kinds import Floats, known
 from ..patch.text import decimal
 from ..program import ProgramError
-from ..readers.rapid.data import SPEEDS
+from ..languages.rapid.data import SPEEDS, ZONES, zone
 from .frames import undeclared
-from .text import MM_DIGITS, SPEED_DIGITS, UNIT_DIGITS, identifier, rounded
+from .text import MM_DIGITS, SPEED_DIGITS, UNIT_DIGITS, identifier, rounded, rounded_quaternions
+
+if TYPE_CHECKING:
+    from .frames import Frame
+    from .sheet import Sheet
 
 MOST = 32  # characters of an identifier
-ZONES = (0.3, 1, 5, 10, 15, 20, 30, 40, 50, 60, 80, 100, 150, 200)  # mm: z0, z1, ...
+ZONE_DIGITS = 3  # of mm
 PLACE = f"[%.{MM_DIGITS}f,%.{MM_DIGITS}f,%.{MM_DIGITS}f]"
 TURN = "[" + ",".join([f"%.{UNIT_DIGITS}f"] * 4) + "]"
 AXES = "[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]"
@@ -23,20 +31,20 @@ LEFT_OUT = {"tool": "tBelt", "base": "wPart"}
 MOVES = {"PTP": "MoveJ", "LIN": "MoveL", "SPL": "MoveL", "CIRC": "MoveC"}
 
 
-def text(sheet):
+def text(sheet: Sheet) -> bytes:
     """The bytes of a .mod file."""
     held = sheet.part_in_hand
     lines = [f"MODULE {identifier(sheet.name, MOST)}"]
     lines += [f"  ! {comment}" for comment in sheet.comments]
-    names = {"tool": [], "base": []}
+    names: dict[str, list[str]] = {"tool": [], "base": []}
     for frames in (sheet.tools, sheet.bases):
         for number, frame in enumerate(frames, 1):
             name = _name(frame, number)
-            known = name in names[frame.what]  # one of the controller's may be given for several
+            there = name in names[frame.what]  # one of the controller's may be given for several
             names[frame.what].append(name)
             if frame.given:
                 lines += _declaration(frame, name, held)
-            elif not known:
+            elif not there:
                 lines += _asked_for(frame, name, held)
                 sheet.notes.append(undeclared(frame, name))
     lines += ["  PROC main()", "    ConfL\\Off;", "    ConfJ\\Off;"]
@@ -46,10 +54,10 @@ def text(sheet):
         f"[{PLACE % tuple(p)},{TURN % tuple(q)},{AXES}]"
         for p, q in zip(
             rounded(sheet.positions, MM_DIGITS).tolist(),
-            rounded(sheet.quaternions, UNIT_DIGITS).tolist(),
+            rounded_quaternions(sheet.quaternions).tolist(),
         )
     ]
-    zone, force = _zone(sheet.blend_mm), None
+    blend, force = _blend(sheet.blend_mm), None
     for k, step in enumerate(sheet.steps):
         if step.note:
             lines.append(f"    ! {step.note}")
@@ -59,8 +67,10 @@ def text(sheet):
         speed = step.speed or (sheet.ptp_speed_mm_s if step.kind == "PTP" else sheet.speed_mm_s)
         target = places[step.pose]
         if step.kind == "CIRC":
-            target = f"{places[step.aux]},{target}"
-        rounds = "fine" if k + 1 == len(sheet.steps) else zone
+            target = f"{places[known(step.aux)]},{target}"
+        rounds = blend if step.zone is None else _zone(step.zone)
+        if k + 1 == len(sheet.steps):
+            rounds = "fine"
         lines.append(
             f"    {MOVES[step.kind]} {target},{_speed(speed)},{rounds},"
             f"{names['tool'][step.tool]}\\WObj:={names['base'][step.base]};"
@@ -69,38 +79,39 @@ def text(sheet):
     return "\r\n".join(lines).encode("ascii")
 
 
-def _name(frame, number):
+def _name(frame: Frame, number: int) -> str:
     """What the instructions call a frame, which is the number ``number`` of its kind."""
     if frame.given:
         return f"{DECLARED[frame.what]}{number}"
     if frame.left_out:
         return LEFT_OUT[frame.what] + ("" if number == 1 else f"_{number}")
-    if not NAME.fullmatch(frame.name):
+    name = known(frame.name)
+    if not NAME.fullmatch(name):
         raise ProgramError(
             "programs.writers.rapid_name",
             "'{name}' is no name of RAPID: a letter, then at most 31 letters, digits or _",
-            name=frame.name,
+            name=name,
         )
-    return frame.name
+    return name
 
 
-def _declaration(frame, name, held):
+def _declaration(frame: Frame, name: str, held: bool) -> list[str]:
     words = f"  ! {'tool' if frame.what == 'tool' else 'work object'} {frame.told}"
     if frame.what == "tool":
         return [
             words,
             "  ! Enter its load before the program runs.",
-            f"  PERS tooldata {name}:=[{_flag(not held)},{_pose(frame.pose)},"
+            f"  PERS tooldata {name}:=[{_flag(not held)},{_pose(known(frame.pose))},"
             "[1,[0,0,1],[1,0,0,0],0,0,0]];",
         ]
     return [
         words,
-        f'  PERS wobjdata {name}:=[{_flag(held)},TRUE,"",{_pose(frame.pose)},'
+        f'  PERS wobjdata {name}:=[{_flag(held)},TRUE,"",{_pose(known(frame.pose))},'
         "[[0,0,0],[1,0,0,0]]];",
     ]
 
 
-def _asked_for(frame, name, held):
+def _asked_for(frame: Frame, name: str, held: bool) -> list[str]:
     """Comments: a frame that the program does not declare."""
     kind = TYPES[frame.what]
     flag = _flag(held == (frame.what == "base"))
@@ -109,26 +120,35 @@ def _asked_for(frame, name, held):
         f"  ! The poses mean: {frame.told}",
     ]
     if frame.pose is not None:
-        lines.append(f"  !   {_pose(frame.pose)}")
+        lines.append(f"  !   {_pose(known(frame.pose))}")
     return lines
 
 
-def _flag(value):
+def _flag(value: bool) -> str:
     return "TRUE" if value else "FALSE"
 
 
-def _pose(frame):
+def _pose(frame: Floats) -> str:
     place = rounded(frame[:3, 3], MM_DIGITS).tolist()
-    turn = rounded(to_quaternions(frame[None, :3, :3])[0], UNIT_DIGITS).tolist()
+    turn = rounded_quaternions(to_quaternions(frame[None, :3, :3]))[0].tolist()
     return f"[{PLACE % tuple(place)},{TURN % tuple(turn)}]"
 
 
-def _speed(speed):
+def _speed(speed: float) -> str:
     if speed in SPEEDS:
         return f"v{speed:.0f}"
     return f"[{decimal(speed, SPEED_DIGITS)},500,5000,1000]"
 
 
-def _zone(blend):
-    fitting = [zone for zone in ZONES if zone <= blend]
-    return f"z{int(fitting[-1])}" if fitting else "fine"
+def _blend(most: float) -> str:
+    fitting = [size for size in ZONES if size <= most]
+    return _zone(fitting[-1] if fitting else 0.0)
+
+
+def _zone(size: float) -> str:
+    """zonedata of a size in mm, 0: fine."""
+    size = float(decimal(size, ZONE_DIGITS))
+    if size in ZONES:
+        return f"z{int(size)}"
+    numbers = ",".join(decimal(one, ZONE_DIGITS) for one in zone(size)[1:])
+    return f"[FALSE,{numbers}]" if size > 0.0 else "fine"

@@ -1,12 +1,21 @@
 """URScript as text: one routine. After Universal Robots' "The URScript Programming Language"."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ...base.frames import to_quaternions
+from ...base.kinds import Floats, known
 from ..patch.text import decimal
 from ..program import ProgramError
 from .frames import WHAT, check_all_set, taken_for_granted, undeclared
 from .text import SPEED_DIGITS, UNIT_DIGITS, identifier, rounded
+
+if TYPE_CHECKING:
+    from .frames import Frame
+    from .sheet import Sheet
 
 POSE = "p[" + ", ".join([f"%.{UNIT_DIGITS}f"] * 6) + "]"
 ACCELERATION = 1.2  # m/s2, the manual's default
@@ -16,7 +25,7 @@ BLEND_SHARE = 0.4  # of the way to a neighbour; circles of neighbouring blends m
 MOST = 64  # characters of a name
 
 
-def text(sheet):
+def text(sheet: Sheet) -> bytes:
     """The bytes of a .script file. The poses are in one base (``one_base``)."""
     if sheet.part_in_hand:
         raise ProgramError(
@@ -38,16 +47,16 @@ def text(sheet):
             "  # ref_frame is not assigned in this program: assign it before, in the robot's base.",
             f"  # The poses mean: {base.told}",
         ]
-        lines += [f"  #   ref_frame = {_one(base.pose)}"] if base.pose is not None else []
+        lines += [f"  #   ref_frame = {_one(known(base.pose))}"] if base.pose is not None else []
     else:
-        lines += [f"  # base {base.told}", f"  ref_frame = {_one(base.pose)}"]
+        lines += [f"  # base {base.told}", f"  ref_frame = {_one(known(base.pose))}"]
     if first.left_out:
         sheet.notes += taken_for_granted([first])
         lines += [
             "  # The TCP is not set in this program: set it before.",
             f"  # The poses mean: {first.told}",
         ]
-        lines += [f"  #   set_tcp({_one(first.pose)})"] if first.pose is not None else []
+        lines += [f"  #   set_tcp({_one(known(first.pose))})"] if first.pose is not None else []
     if any(step.kind == "SPL" for step in sheet.steps):
         lines.append("  # URScript has no splines: their points are joined by lines.")
     places = [
@@ -62,25 +71,27 @@ def text(sheet):
             tool = step.tool
             if not sheet.tools[tool].left_out:
                 lines.append(f"  # tool {sheet.tools[tool].told}")
-                lines.append(f"  set_tcp({_one(sheet.tools[tool].pose)})")
+                lines.append(f"  set_tcp({_one(known(sheet.tools[tool].pose))})")
         if step.force != force:
             force = step.force
             lines.append("  # force as set" if force is None else f"  # force {force:g} N")
         speed = decimal((step.speed or sheet.speed_mm_s) / 1000.0, SPEED_DIGITS + 3, 1)
         place = places[step.pose]
         if step.kind == "PTP":
-            lines.append(f"  movej({place}, a={JOINT_ACCELERATION}, v={JOINT_SPEED})")
+            tail = decimal(blend / 1000.0, 6, 1) if step.zone else "0.0"
+            tail = "" if float(tail) == 0.0 else f", r={tail}"
+            lines.append(f"  movej({place}, a={JOINT_ACCELERATION}, v={JOINT_SPEED}{tail})")
             continue
         tail = f"a={ACCELERATION}, v={speed}, r={decimal(blend / 1000.0, 6, 1)}"
         if step.kind == "CIRC":
-            lines.append(f"  movec({places[step.aux]}, {place}, {tail}, mode=0)")
+            lines.append(f"  movec({places[known(step.aux)]}, {place}, {tail}, mode=0)")
         else:
             lines.append(f"  movel({place}, {tail})")
     lines += ["end", ""]
     return "\n".join(lines).encode("ascii")
 
 
-def _check_numbers(frame):
+def _check_numbers(frame: Frame) -> None:
     if frame.name is not None:
         raise ProgramError(
             "programs.writers.no_names",
@@ -90,11 +101,11 @@ def _check_numbers(frame):
         )
 
 
-def _one(frame):
+def _one(frame: Floats) -> str:
     return POSE % tuple(_vectors(frame[None])[0])
 
 
-def _vectors(frames):
+def _vectors(frames: Floats) -> Floats:
     """(n, 6): metres and rotation vectors (axis times angle, at most pi)."""
     quaternions = to_quaternions(frames[:, :3, :3])
     sines = np.linalg.norm(quaternions[:, 1:], axis=1)
@@ -102,12 +113,18 @@ def _vectors(frames):
     factors = 2.0 * np.arctan2(sines, quaternions[:, 0]) / np.where(small, 1.0, sines)
     factors = np.where(small, 2.0, factors)
     rows = np.hstack([frames[:, :3, 3] / 1000.0, quaternions[:, 1:] * factors[:, None]])
-    return rounded(rows, UNIT_DIGITS)
+    found = rounded(rows, UNIT_DIGITS)
+    # A rounded half turn that is more than half a turn would be one about the opposite axis.
+    over = np.linalg.norm(found[:, 3:], axis=1) > np.pi
+    scale = 10.0**UNIT_DIGITS
+    found[over, 3:] = np.trunc(rows[over, 3:] * scale) / scale + 0.0
+    return found
 
 
-def _blends(sheet):
+def _blends(sheet: Sheet) -> list[float]:
     """mm for each step: never more than a share of the ways before and behind."""
     places = sheet.positions[[step.pose for step in sheet.steps]]
     ways = np.linalg.norm(np.diff(places, axis=0), axis=1)
     before, behind = np.append(0.0, ways), np.append(ways, 0.0)
-    return np.minimum(sheet.blend_mm, BLEND_SHARE * np.minimum(before, behind)).tolist()
+    wanted = [sheet.blend_mm if step.zone is None else step.zone for step in sheet.steps]
+    return np.minimum(wanted, BLEND_SHARE * np.minimum(before, behind)).tolist()

@@ -5,69 +5,49 @@ and 7 of degrees in KRL, 9 of a quaternion, of metres and of radians. The contro
 their own arithmetic (32 bit in KRL and RAPID) is what limits them.
 """
 
-from dataclasses import dataclass, field, replace
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import replace
 from pathlib import Path
-from typing import Optional
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from ...base.kinds import Floats, Json
 from .. import one_frame
+from ..problems import ordered
 from ..program import Motion, Program, ProgramError
 from . import one_base
 from .frames import Frames, checked
+from .sheet import Sheet, Step
 from .text import printable
 from .turned import resolved
 
+if TYPE_CHECKING:
+    from ..program import Fact
+    from .frames import Given
+
 IN_HAND = ("held by the robot", "fixed in the room")  # as the RAPID reader says it
 
-
-@dataclass
-class Step:
-    """A motion to be written. ``aux``: number of the auxiliary pose, None: no arc."""
-
-    kind: str  # PTP, LIN, CIRC, SPL
-    pose: int  # row of the poses
-    aux: Optional[int]
-    speed: Optional[float]  # mm/s
-    force: Optional[float]  # N
-    tool: int  # row of the tools
-    base: int
-    note: str = ""  # what a comment before it says
-
-
-@dataclass
-class Sheet:
-    """What the writer of a language gets."""
-
-    name: str
-    comments: list
-    steps: list
-    positions: np.ndarray  # (n, 3) mm
-    quaternions: np.ndarray  # (n, 4) w, x, y, z
-    frames: np.ndarray  # (n, 4, 4)
-    tools: list  # of Frame; flange_from_tcp
-    bases: list  # of Frame; robot_from_base
-    speed_mm_s: float  # where a motion has none
-    ptp_speed_mm_s: float
-    blend_mm: float
-    part_in_hand: bool
-    notes: list = field(default_factory=list)  # Facts: what the program takes for granted
+Written: TypeAlias = "Program | Iterable[Motion] | Iterable[Json]"  # Json: passes
 
 
 def write_program(
-    path,
-    language,
-    program,
+    path: Path | str,
+    language: str | None,
+    program: Written,
     *,
-    name=None,
-    comment="",
-    tools=None,
-    bases=None,
-    speed_mm_s=100.0,
-    ptp_speed_mm_s=200.0,
-    blend_mm=1.0,
-    part_in_hand=None,
-):
+    name: str | None = None,
+    comment: str = "",
+    tools: Given | None = None,
+    bases: Given | None = None,
+    speed_mm_s: float = 100.0,
+    ptp_speed_mm_s: float = 200.0,
+    blend_mm: float = 1.0,
+    part_in_hand: bool | None = None,
+) -> list[Fact]:
     """Writes a robot program to ``path``, whole or not at all. Raises ProgramError.
 
     language: .src, .mod, .script, .csv or None, the suffix of ``path``.
@@ -83,7 +63,7 @@ def write_program(
     being flange_from_tcp, bases robot_from_base: these numbers. "as-known": the numbers that
     the program knows of them, or ``Motion.tool``, ``Motion.base`` tell.
     speed_mm_s: of path motions without a speed; ptp_speed_mm_s: of PTP where the language has it.
-    blend_mm: how far from a pose the robot may round the corner; 0: it stops.
+    blend_mm: how far from a pose whose motion gives no zone the robot may round the corner; 0: it stops.
     part_in_hand: the poses are those of a fixed tool in the part that the robot holds (RAPID's
     robhold); None: what the words of the program's frames tell.
 
@@ -100,7 +80,9 @@ def write_program(
     suffix = (language or path.suffix).lower()
     writer = _writer(suffix, path)
     motions, turns = resolved(motions_of(program))
-    left_out, joined, given = [], [], []
+    left_out: list[one_frame.Place] = []
+    joined: list[Fact] = []
+    given: list[Fact] = []
     known = Program("", "", motions)
     if isinstance(program, Program):
         known = replace(program, motions=motions)
@@ -125,7 +107,7 @@ def write_program(
     head = [comment] if comment else []
     if isinstance(program, Program):
         head.append(f"from {program.file} ({program.language})")
-        head += [f"not followed there: {problem}" for problem in program.problems[:20]]
+        head += [f"not followed there: {problem}" for problem in ordered(program.problems)[:20]]
     head += [str(fact) for _, _, fact in left_out]
     head += one_base.comments(joined)
     sheet.comments = [printable(text) for text in head]
@@ -138,7 +120,7 @@ def write_program(
     return [*sheet.notes, *turns, *joined, *given, *(fact for _, _, fact in left_out)]
 
 
-def _writer(suffix, path):
+def _writer(suffix: str, path: Path) -> Callable[[Sheet], bytes]:
     # Imported when called for, as the readers are.
     if suffix == ".src":
         from .krl import text
@@ -158,15 +140,15 @@ def _writer(suffix, path):
     return text
 
 
-def motions_of(program):
+def motions_of(program: Written) -> list[Motion]:
     """List of Motion of a Program, of motions or of passes."""
     if isinstance(program, Program):
         return program.motions
-    program = list(program)
-    if all(isinstance(one, Motion) for one in program):
-        return program
-    motions = []
+    motions: list[Motion] = []
     for one in program:
+        if isinstance(one, Motion):
+            motions.append(one)
+            continue
         poses = np.asarray(one["poses"], dtype=float)
         for k, pose in enumerate(poses):
             kind, speed = ("PTP", None) if k == 0 else ("LIN", float(one["feed_mm_s"]))
@@ -174,9 +156,12 @@ def motions_of(program):
     return motions
 
 
-def _sheet(motions, tool_rows, base_rows):
+def _sheet(motions: Iterable[Motion], tool_rows: Frames, base_rows: Frames) -> Sheet:
     """Motions as Steps, poses as arrays; the rows are Frames."""
-    poses, steps, aux, gap = [], [], None, []
+    poses: list[Floats] = []
+    steps: list[Step] = []
+    aux: int | None = None
+    gap: list[int] = []
     for number, motion in enumerate(motions):
         if motion.pose is None:
             gap.append(motion.line)
@@ -208,6 +193,8 @@ def _sheet(motions, tool_rows, base_rows):
         step = Step(
             kind, len(poses) - 1, aux if kind == "CIRC" else None, speed, motion.force_N, 0, 0
         )
+        if motion.zone_mm is not None and math.isfinite(motion.zone_mm):
+            step.zone = max(0.0, motion.zone_mm)
         step.tool, step.base, step.note = (
             tool_rows.row(motion.tool),
             base_rows.row(motion.base),

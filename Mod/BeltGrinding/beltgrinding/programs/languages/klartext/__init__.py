@@ -1,0 +1,1 @@
+"""Reads Heidenhain conversational programs (Klartext)."""

@@ -5,13 +5,11 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[1]
-for folder in (ROOT / "Mod" / "BeltGrinding", ROOT / "tests"):
-    if str(folder) not in sys.path:
-        sys.path.insert(0, str(folder))
+from support import left_behind, skips
 
-from support import skips  # noqa: E402
-from support.freecad import freecad  # noqa: E402, F401
+ROOT = Path(__file__).resolve().parents[1]
+
+pytest_plugins = ["support.freecad", "support.inside"]
 
 
 def _judged(report):
@@ -33,3 +31,35 @@ def pytest_runtest_makereport():
 @pytest.hookimpl(hookwrapper=True)
 def pytest_make_collect_report():
     _judged((yield).get_result())
+
+
+def pytest_deselected(items):
+    config = items[0].config
+    config.left_out = getattr(config, "left_out", 0) + len(items)
+
+
+def pytest_terminal_summary(terminalreporter, config):
+    if getattr(config, "left_out", 0):
+        terminalreporter.write_line(f"{config.left_out} tests left out")
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node):
+    """All workers of xdist leave out the same tests; the session's own process hears of none."""
+    node.config.left_out = getattr(node, "workeroutput", {}).get("left_out", 0)
+
+
+def pytest_sessionstart(session):
+    if not hasattr(session.config, "workerinput"):  # once, not by each worker of xdist
+        session.config.checkout_before = left_behind.listing(ROOT)
+
+
+def pytest_sessionfinish(session):
+    """Fails the session, with a sentence, if a file was left in the checkout."""
+    if hasattr(session.config, "workerinput"):
+        session.config.workeroutput["left_out"] = getattr(session.config, "left_out", 0)
+        return
+    told = left_behind.sentence(session.config.checkout_before, left_behind.listing(ROOT))
+    if told:
+        print(f"\nFAILED: {told}", file=sys.stderr)
+        session.exitstatus = pytest.ExitCode.TESTS_FAILED

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/contact/belt_case.h"
+#include "core/belt/belt_case.h"
 
 namespace beltgrinding {
 namespace {

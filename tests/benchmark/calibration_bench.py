@@ -3,14 +3,11 @@ tools/bench calibration [--repeats N] [--json FILE]"""
 
 import argparse
 import json
-import sys
 import time
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "Mod" / "BeltGrinding"), str(ROOT / "tests")]
 
-from support import held_out  # noqa: E402
+from support import held_out
 
 
 def main():

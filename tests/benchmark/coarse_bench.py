@@ -16,21 +16,19 @@ in       % of the area in tolerance, full and coarse
 import argparse
 import json
 import math
-import sys
 import time
 from pathlib import Path
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-import parts_bench as parts  # noqa: E402
-from beltgrinding.engine import core  # noqa: E402
-from beltgrinding.job import load as jobs, poses, resolution, workpiece  # noqa: E402
-from beltgrinding.planning import rounds  # noqa: E402
-from beltgrinding.raster import raster_path  # noqa: E402
-from beltgrinding.simulation import run as runs  # noqa: E402
+import parts_bench as parts
+from beltgrinding.engine import core
+from beltgrinding.job import load as jobs, poses, resolution, workpiece
+from beltgrinding.planning import rounds
+from beltgrinding.raster import raster_path
+from beltgrinding.simulation import run as runs
 
 PARTS = ("ball_valve_lever", "crank_arm", "propeller_3blade")
 SAMPLES = 60_000

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <memory>
 
-#include "contact/half_space.h"
-#include "contact/wheel_rim.h"
 #include "convolution.h"
+#include "elastic/half_space.h"
+#include "elastic/wheel_rim.h"
 
 namespace beltgrinding {
 namespace {

@@ -20,21 +20,19 @@ import json
 import os
 import shutil
 import subprocess
-import sys
 import tempfile
 import time
 from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "Mod" / "BeltGrinding"))
 
-import beltgrinding  # noqa: E402
-from beltgrinding.inspection import closed_mesh  # noqa: E402
-from beltgrinding.engine import core  # noqa: E402
-from beltgrinding.job import workpiece, load as jobs  # noqa: E402
-from beltgrinding.simulation import run as runs  # noqa: E402
-from beltgrinding.simulation.result import Result  # noqa: E402
+import beltgrinding
+from beltgrinding.inspection import closed_mesh
+from beltgrinding.engine import core
+from beltgrinding.job import workpiece, load as jobs
+from beltgrinding.simulation import run as runs
+from beltgrinding.simulation.result import Result
 
 BORDER = 3.0  # of the greatest deviation
 CAD_SPACING = float(os.environ.get("BELTGRINDING_CAD_SPACING", "0.2"))  # mm

@@ -10,16 +10,14 @@ and iterations; beside what RIFTA reaches, and the plain way: least squares, wha
 import argparse
 import json
 import os
-import sys
 import time
 from pathlib import Path
 
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
-from beltgrinding.engine import core  # noqa: E402
+from beltgrinding.engine import core
 
 DATA = (
     Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared"))

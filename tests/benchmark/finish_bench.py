@@ -3,17 +3,14 @@ SYNTHETIC tables: tools/bench finish [--tables N] [--json FILE]"""
 
 import argparse
 import json
-import sys
 import time
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "Mod" / "BeltGrinding"), str(ROOT / "tests")]
 
-import numpy as np  # noqa: E402
+import numpy as np
 
-from beltgrinding.calibration import fit_finish  # noqa: E402
-from support import synthetic_finish  # noqa: E402
+from beltgrinding.calibration import fit_finish
+from support import synthetic_finish
 
 TABLES = ((15, 0.1), (30, 0.1), (30, 0.25), (60, 0.1))  # measurements, scatter of ln Ra
 

@@ -19,19 +19,17 @@ import argparse
 import json
 import math
 import os
-import sys
 import time
 from pathlib import Path
 
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
-from beltgrinding.engine import InputError, core  # noqa: E402
-from beltgrinding.job import load as jobs, poses, workpiece  # noqa: E402
-from beltgrinding.raster import path_check, raster_path, reachable  # noqa: E402
-from beltgrinding.simulation import run as runs  # noqa: E402
+from beltgrinding.engine import InputError, core
+from beltgrinding.job import load as jobs, poses, workpiece
+from beltgrinding.raster import path_check, raster_path, reachable
+from beltgrinding.simulation import run as runs
 
 PARTS = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared")) / "data" / "cad"
 WHEEL = {"radius_mm": 20, "width_mm": 15, "crown_radius_mm": 60}

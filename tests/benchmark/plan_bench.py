@@ -21,7 +21,6 @@ import argparse
 import json
 import math
 import os
-import sys
 import tempfile
 import time
 from pathlib import Path
@@ -29,15 +28,14 @@ from pathlib import Path
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
-from beltgrinding import planning  # noqa: E402
-from beltgrinding.engine import InputError, core  # noqa: E402
-from beltgrinding.inspection import verdict as verdicts  # noqa: E402
-from beltgrinding.job import load as jobs, poses, workpiece  # noqa: E402
-from beltgrinding.planning import grinding  # noqa: E402
-from beltgrinding.raster import raster_path  # noqa: E402
-from beltgrinding.simulation import run as runs  # noqa: E402
+from beltgrinding import planning
+from beltgrinding.engine import InputError, core
+from beltgrinding.inspection import verdict as verdicts
+from beltgrinding.job import load as jobs, poses, workpiece
+from beltgrinding.planning import grinding
+from beltgrinding.raster import raster_path
+from beltgrinding.simulation import run as runs
 
 PARTS = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared")) / "data" / "cad"
 SETS = (

@@ -7,19 +7,14 @@ simulation's own influence of the force. Printed: the error's median and 95th pe
 """
 
 import argparse
-import sys
-from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
-sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-import plan_bench  # noqa: E402
-from beltgrinding.planning import rounds  # noqa: E402
-from beltgrinding.planning.commands import Commands  # noqa: E402
-from beltgrinding.simulation import run as runs  # noqa: E402
+import plan_bench
+from beltgrinding.planning import rounds
+from beltgrinding.planning.commands import Commands
+from beltgrinding.simulation import run as runs
 
 CHANGE = 0.03
 LEAST = 50  # samples under a motion

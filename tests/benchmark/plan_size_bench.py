@@ -10,16 +10,13 @@ import argparse
 import json
 import math
 import resource
-import sys
 import time
 from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
-from beltgrinding.engine import core  # noqa: E402
+from beltgrinding.engine import core
 
 PER_SAMPLE = 24.5  # motions that grind a sample
 DEPTH = 0.3  # mm that all motions take from a sample together

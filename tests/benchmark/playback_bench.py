@@ -13,6 +13,7 @@ Where there is no graphics card (llvmpipe), a frame's time is the rasteriser's.
 
 import json
 import os
+import tempfile
 import time
 from pathlib import Path
 
@@ -55,7 +56,8 @@ def recorded():
     beltgrinding.make_belt_machine(
         job, WheelRadius=100, WheelWidth=40, Force="60 N", Compliance="elastic_foundation"
     )
-    path = beltgrinding.import_program(job, program(Path("lanes.csv")))
+    with tempfile.TemporaryDirectory() as folder:
+        path = beltgrinding.import_program(job, program(Path(folder, "lanes.csv")))
     with job_inputs.scratch_folder() as folder:
         data = job_inputs.to_data(job, folder)
         result = runs.run(data, None, core.Recording())

@@ -8,10 +8,22 @@ import time
 import numpy as np
 
 from beltgrinding.engine import core
+from beltgrinding.job import engine_input, load
 
 SIDE, SPACING = 500.0, 0.5  # mm
 LANES, TRAVEL = 20, 1.0  # passes over the plate; mm a step
 JUMPS = 100
+JOB = {
+    "design": {"file": "plate"},
+    "belt_machine": {
+        "wheel": {"width_mm": 40.0},
+        "compliance": {"model": "elastic_foundation"},
+        "force_N": 60.0,
+    },
+    "law": {"coefficient_mm2_per_N": 1e-4},
+    "simulation": {"max_travel_mm": TRAVEL},
+    "programs": [{"poses": []}],
+}
 
 
 def plate():
@@ -42,10 +54,7 @@ def grind(recording):
     core.simulate(
         field,
         lanes(),
-        {"radius": 100.0, "width": 40.0},
-        {"model": "elastic_foundation"},
-        {"coefficient": 1e-4},
-        {"force": 60.0, "max_travel": TRAVEL},
+        engine_input.of(load.validate(JOB)),
         recording=recording,
     )
     return field, time.perf_counter() - begin

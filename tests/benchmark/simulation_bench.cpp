@@ -15,8 +15,8 @@
 
 #include "base/lanes.h"
 #include "beltgrinding/simulation.h"
-#include "contact/placed_block.h"
-#include "contact/wheel_rim.h"
+#include "elastic/wheel_rim.h"
+#include "gap/placed_block.h"
 #include "heightfield/sample_blocks.h"
 #include "support/synthetic_field.h"
 

@@ -3,25 +3,22 @@
 tools/bench study; `python study_bench.py [--runs N] [--json FILE]` does the same. The job is a plate of 60 x 40 mm under one
 pass; what varies are its force and where the part lies. Counted from the first tenth of the runs on: by then all workers are
 there and warm. Rates need a machine on which nothing else runs; processor seconds hardly: w a run in the workers and o beside them
-(scheduler, and who asked) let two workers on two cores make at most 2 w / (w + o) times as many runs as one.
+(of who asked) let two workers on two cores make at most 2 w / (w + o) times as many runs as one.
 """
 
 import argparse
 import json
 import os
-import sys
 import tempfile
 import time
 from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "Mod" / "BeltGrinding"), str(ROOT / "tests")]
 
-from beltgrinding.engine import core  # noqa: E402
-from beltgrinding.studies import making  # noqa: E402
-from support.workers import local_clusters, worker_processes  # noqa: E402
+from beltgrinding.engine import core
+from beltgrinding.studies import making
+from support.workers import worker_processes
 
 GOAL = 1.8  # times one worker
 WARM = 0.1  # of the runs
@@ -57,10 +54,8 @@ def processor_s(pid):
 
 
 def spent():
-    """(processor s of the workers, of the scheduler and this process) until now."""
-    scheduler = local_clusters(os.getpid())
-    here = time.process_time() + sum(map(processor_s, scheduler))
-    return sum(map(processor_s, worker_processes(os.getpid()))), here
+    """(processor s of the workers, of this process) until now."""
+    return sum(map(processor_s, worker_processes(os.getpid()))), time.process_time()
 
 
 def rate(given, workers):

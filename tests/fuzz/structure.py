@@ -26,9 +26,9 @@ def words_of(reader, parents):
     for files in parents:
         for data in files.values():
             found.update(WORD.findall(data[:20_000]))
-    stem = reader.__name__.strip("_")
+    stem = reader.name
     for name, module in list(sys.modules.items()):
-        if f".readers.{stem}" not in name:
+        if f".languages.{stem}" not in name:
             continue
         for value in vars(module).values():
             found.update(word.encode() for word in _words(value))

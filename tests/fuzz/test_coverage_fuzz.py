@@ -2,18 +2,16 @@
 
 import random
 import signal
-import sys
 from pathlib import Path
 
 import pytest
 
-HERE = Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE), str(HERE.parents[1] / "Mod" / "BeltGrinding")]
+import coverage_fuzz as guided
+import fuzz_programs as fuzzing
+import structure
+from beltgrinding.programs.registry import READERS
 
-import coverage_fuzz as guided  # noqa: E402
-import fuzz_programs as fuzzing  # noqa: E402
-import structure  # noqa: E402
-from beltgrinding.programs.registry import READERS  # noqa: E402
+HERE = Path(__file__).resolve().parent
 
 INPUTS = 25  # of each language
 KRL = {"a.src": b"DEF a()\nLIN {X 1,Y 2,Z 3,A 4,B 5,C 6}\nEND\n"}

@@ -1,19 +1,17 @@
 """A short run of fuzz_programs.py, and proof that its oracles see what they are for."""
 
-import sys
 from collections import Counter
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-HERE = Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE), str(HERE.parents[1] / "Mod" / "BeltGrinding")]
+import fuzz_programs as fuzzing
+from beltgrinding.programs.registry import READERS
+from beltgrinding.programs.program import ProgramError
+from beltgrinding.programs.program import Motion, Problem, Program
 
-import fuzz_programs as fuzzing  # noqa: E402
-from beltgrinding.programs.registry import READERS  # noqa: E402
-from beltgrinding.programs.program import ProgramError  # noqa: E402
-from beltgrinding.programs.program import Motion, Problem, Program  # noqa: E402
+HERE = Path(__file__).resolve().parent
 
 INPUTS = 30  # of each seed: damaged files
 STRIDE = 29  # bytes between the cuts of each seed

@@ -1,24 +1,33 @@
 """The examples beside the blade: from the menu to deviation and playback, and the pictures of them."""
 
 import json
+from pathlib import Path
 
 import pytest
+import FreeCAD
+import FreeCADGui as Gui
 from PIL import Image
+from PySide import QtGui
 
-from support import pictures
+from support import animation, tutorial
+from support import pictures, synthetic_finish
+from support.hands import (
+    choose,
+    field,
+    menu,
+    picture,
+    press,
+    settle,
+    type_in,
+    wait,
+    walked,
+    whole_screen,
+    window,
+)
 
-PREPARE = """
-import json
-from pathlib import Path
-from support.hands import *
-from support import pictures, tutorial
-
-Gui.activateWorkbench("BeltGrindingWorkbench")
-window.showMaximized()
-settle()
 
 def ground(direction):
-    \"\"\"Grinds the example, seen along a direction; the panel of the deviation is open.\"\"\"
+    """Grinds the example, seen along a direction; the panel of the deviation is open."""
     doc = FreeCAD.ActiveDocument
     view = Gui.ActiveDocument.ActiveView
     view.setAnimationEnabled(False)
@@ -28,147 +37,145 @@ def ground(direction):
     look(direction)
     return doc
 
+
 def look(direction):
-    from pivy import coin
     view = Gui.ActiveDocument.ActiveView
     away = FreeCAD.Vector(*direction).normalize()
     level = FreeCAD.Vector(0, 0, 1).cross(-away).normalize()
     up = (-away).cross(level)
-    view.setCameraOrientation(FreeCAD.Placement(FreeCAD.Matrix(
-        level.x, up.x, -away.x, 0, level.y, up.y, -away.y, 0, level.z, up.z, -away.z, 0)).Rotation.Q)
+    view.setCameraOrientation(
+        FreeCAD.Placement(
+            FreeCAD.Matrix(
+                level.x, up.x, -away.x, 0, level.y, up.y, -away.y, 0, level.z, up.z, -away.z, 0
+            )
+        ).Rotation.Q
+    )
     view.fitAll()
     settle()
 
+
 def nearer(share):
     Gui.ActiveDocument.ActiveView.getCameraNode().height.setValue(
-        share * Gui.ActiveDocument.ActiveView.getCameraNode().height.getValue())
+        share * Gui.ActiveDocument.ActiveView.getCameraNode().height.getValue()
+    )
     settle()
 
+
 def shot(width, height):
-    \"\"\"The 3D view alone, as the bytes of a PNG.\"\"\"
+    """The 3D view alone, as the bytes of a PNG."""
     settle()
     Gui.ActiveDocument.ActiveView.saveImage("shot.png", width, height, "White")
     return Path("shot.png").read_bytes()
-"""
 
 
-@pytest.fixture
-def walk(freecad):
-    """Runs steps; the pictures that they take must still look like those in docs/images."""
-
-    def run(body):
-        body = PREPARE + body + '\nPath("walked.json").write_text(json.dumps(walked()))\n'
-        freecad.run(body, window=True, fresh=True)  # its tool bar tells what was selected before
-        release, names = json.loads((freecad.folder / "walked.json").read_text())
-        pictures.check(release, names)
-
-    return run
+def prepared():
+    Gui.activateWorkbench("BeltGrindingWorkbench")
+    whole_screen()
+    settle()
 
 
-def test_the_tap(walk):
-    walk(
-        """
-from support import animation
-menu("Example: mixer tap")
-doc = ground((-0.75, 0.55, -0.45))
-assert 85 < float(tutorial.statistics()["In tolerance"].split()[0]) < 95
-picture("example-tap")
-press("OK")
-doc.RobotPath.ViewObject.Visibility = False
-nearer(0.78)
-pictures.keep("tap", shot(1000, 600))
+@pytest.mark.slow
+@pytest.mark.freecad(window=True, fresh=True)
+def test_the_tap():
+    prepared()
+    menu("Example: mixer tap")
+    doc = ground((-0.75, 0.55, -0.45))
+    assert 85 < float(tutorial.statistics()["In tolerance"].split()[0]) < 95
+    picture("example-tap")
+    press("OK")
+    doc.RobotPath.ViewObject.Visibility = False
+    nearer(0.78)
+    pictures.keep("tap", shot(1000, 600))
 
-# The wheel runs over it, and leaves the hollow brown.
-menu("Playback")
-dock = field("BeltGrinding_PlaybackDock")
-wait(lambda: dock.scene is not None, 200)
-scene = dock.scene
-scene.cell.root.removeChild(scene.cell.robot.root)  # it stands between the eye and the tap
-assert 50_000 < len(animation.play(dock, "tap")) < 1_500_000
-dock.close()
-"""
-    )
-
-
-def test_the_tap_on_a_free_belt(walk):
-    walk(
-        """
-menu("Example: tap spout on a free belt")
-doc = ground((-0.75, 0.55, -0.45))
-assert 65 < float(tutorial.statistics()["In tolerance"].split()[0]) < 85
-picture("example-tap-belt")
-"""
-    )
+    # The wheel runs over it, and leaves the hollow brown.
+    menu("Playback")
+    dock = field("BeltGrinding_PlaybackDock")
+    wait(lambda: dock.scene is not None, 200)
+    scene = dock.scene
+    scene.cell.root.removeChild(scene.cell.robot.root)  # it stands between the eye and the tap
+    assert 50_000 < len(animation.play(dock, "tap")) < 1_500_000
+    dock.close()
+    pictures.check(*walked())
 
 
-def test_the_blade_with_fillet_and_edges(walk):
-    walk(
-        """
-menu("Example: blade with fillet and edges")
-doc = ground((0.85, -0.6, -0.35))
-assert 85 < float(tutorial.statistics()["In tolerance"].split()[0]) < 95
-picture("example-vane")
-"""
-    )
+@pytest.mark.slow
+@pytest.mark.freecad(window=True, fresh=True)
+def test_the_tap_on_a_free_belt():
+    prepared()
+    menu("Example: tap spout on a free belt")
+    doc = ground((-0.75, 0.55, -0.45))
+    assert 65 < float(tutorial.statistics()["In tolerance"].split()[0]) < 85
+    picture("example-tap-belt")
+    pictures.check(*walked())
 
 
-def test_the_knife(walk):
-    walk(
-        """
-menu("Example: chef's knife")
-doc = ground((-0.5, 0.8, -0.4))
-assert 90 < float(tutorial.statistics()["In tolerance"].split()[0]) < 98
-picture("example-knife")
-"""
-    )
+@pytest.mark.slow
+@pytest.mark.freecad(window=True, fresh=True)
+def test_the_blade_with_fillet_and_edges():
+    prepared()
+    menu("Example: blade with fillet and edges")
+    doc = ground((0.85, -0.6, -0.35))
+    assert 85 < float(tutorial.statistics()["In tolerance"].split()[0]) < 95
+    picture("example-vane")
+    pictures.check(*walked())
 
 
-def test_the_blades_temperatures(walk):
-    walk(
-        """
-menu("Example: compressor blade")
-job = FreeCAD.ActiveDocument.BeltGrindingJob
-job.ViewObject.Proxy.doubleClicked(job.ViewObject)
-settle()
-field("foldHeat").click()
-choice = field("thermalPreset", QtGui.QComboBox)
-choice.setCurrentIndex(choice.findText("Titanium alloy Ti-6Al-4V"))
-press("OK")
-doc = ground((-0.5, 2, -0.6))
-deviation = doc.Deviation
-assert 20 < deviation.GreatestTemperature < deviation.GreatestTemperatureAtMost
-colours = field("ColourBy", QtGui.QComboBox)
-colours.setCurrentIndex(colours.findText("Greatest temperature"))
-settle()
-picture("heat-blade")
-"""
-    )
+@pytest.mark.slow
+@pytest.mark.freecad(window=True, fresh=True)
+def test_the_knife():
+    prepared()
+    menu("Example: chef's knife")
+    doc = ground((-0.5, 0.8, -0.4))
+    assert 90 < float(tutorial.statistics()["In tolerance"].split()[0]) < 98
+    picture("example-knife")
+    pictures.check(*walked())
 
 
-def test_the_blades_finish(walk):
-    walk(
-        """
-from support import synthetic_finish
-menu("Example: compressor blade")
-job = FreeCAD.ActiveDocument.BeltGrindingJob
-job.ViewObject.Proxy.doubleClicked(job.ViewObject)
-settle()
-field("foldFinish").click()
-field("finishChoice", QtGui.QComboBox).setCurrentIndex(1)
-Path("roughness.json").write_text(json.dumps(synthetic_finish.model()))
-choose("roughness.json")
-field("readFinishModel").click()
-type_in("grit", "120")
-type_in("initial_Ra_um", "1.6")
-press("OK")
-doc = ground((-0.5, 2, -0.6))
-assert 0.2 < doc.Deviation.MeanRoughness < 1.2 and doc.Deviation.GreatestRoughness < 1.7
-colours = field("ColourBy", QtGui.QComboBox)
-colours.setCurrentIndex(colours.findText("Roughness"))
-settle()
-picture("finish-blade")
-"""
-    )
+@pytest.mark.slow
+@pytest.mark.freecad(window=True, fresh=True)
+def test_the_blades_temperatures():
+    prepared()
+    menu("Example: compressor blade")
+    job = FreeCAD.ActiveDocument.BeltGrindingJob
+    job.ViewObject.Proxy.doubleClicked(job.ViewObject)
+    settle()
+    field("foldHeat").click()
+    choice = field("thermalPreset", QtGui.QComboBox)
+    choice.setCurrentIndex(choice.findText("Titanium alloy Ti-6Al-4V"))
+    press("OK")
+    doc = ground((-0.5, 2, -0.6))
+    deviation = doc.Deviation
+    assert 20 < deviation.GreatestTemperature < deviation.GreatestTemperatureAtMost
+    colours = field("ColourBy", QtGui.QComboBox)
+    colours.setCurrentIndex(colours.findText("Greatest temperature"))
+    settle()
+    picture("heat-blade")
+    pictures.check(*walked())
+
+
+@pytest.mark.slow
+@pytest.mark.freecad(window=True, fresh=True)
+def test_the_blades_finish():
+    prepared()
+    menu("Example: compressor blade")
+    job = FreeCAD.ActiveDocument.BeltGrindingJob
+    job.ViewObject.Proxy.doubleClicked(job.ViewObject)
+    settle()
+    field("foldFinish").click()
+    field("finishChoice", QtGui.QComboBox).setCurrentIndex(1)
+    Path("roughness.json").write_text(json.dumps(synthetic_finish.model()))
+    choose("roughness.json")
+    field("readFinishModel").click()
+    type_in("grit", "120")
+    type_in("initial_Ra_um", "1.6")
+    press("OK")
+    doc = ground((-0.5, 2, -0.6))
+    assert 0.2 < doc.Deviation.MeanRoughness < 1.2 and doc.Deviation.GreatestRoughness < 1.7
+    colours = field("ColourBy", QtGui.QComboBox)
+    colours.setCurrentIndex(colours.findText("Roughness"))
+    settle()
+    picture("finish-blade")
+    pictures.check(*walked())
 
 
 def test_the_readme_shows_an_animation():

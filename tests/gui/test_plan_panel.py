@@ -1,154 +1,155 @@
 """The plan's panel: limits, rounds, before and after, the chart, Apply as one undo step, Cancel, programs written."""
 
-PREPARE = """
 import json
-from pathlib import Path
-import beltgrinding
-from support.hands import *
-start()
-doc = FreeCAD.newDocument("work")
-doc.UndoMode = 1
-part = doc.addObject("Part::Feature", "Block")
-part.Shape = Part.makeBox(60, 40, 20)
-doc.recompute()
-job = beltgrinding.make_job(part, ["Face6"], Spacing="1 mm")
-beltgrinding.make_stock(job, Allowance="0.2 mm")
-beltgrinding.make_belt_machine(job, WheelRadius=30, WheelWidth="15 mm", CrownRadius="80 mm", Force="30 N")
-path = beltgrinding.make_raster(job, Along="direction", Direction=FreeCAD.Vector(1, 0, 0), Feed="90 mm/s")
-doc.recompute()
-Gui.activeDocument().activeView().viewIsometric()
-Gui.SendMsgToActiveView("ViewFit")
-settle()
-"""
+
+import pytest
+import FreeCAD
+import FreeCADGui as Gui
+import Part
+from PySide import QtCore, QtGui
+
+from support.planning import prepared
+from support.hands import (
+    field,
+    menu,
+    picture,
+    press,
+    settle,
+    start,
+    type_in,
+    visible,
+    wait,
+    whole_screen,
+)
+
+pytestmark = pytest.mark.freecad(window=True)
 
 
-def test_from_the_limits_to_a_planned_program(freecad):
-    freecad.run(
-        PREPARE
-        + """
-steps = doc.UndoCount
-menu("Plan feeds...")
-plan = doc.Plan
-assert doc.UndoCount == steps + 1
-type_in("FeedMax", "120")
-field("foldRounds", QtGui.QToolButton).click()
-settle()
-field("Rounds", QtGui.QSpinBox).setValue(3)
-field("Check", QtGui.QCheckBox).setChecked(False)
-feeds = list(path.Feeds)
-press("Plan")
-assert plan.FeedMax.Value == 120.0 and plan.Rounds == 3
-wait(lambda: plan.Fingerprint, 120)
-settle()
-assert "in tolerance as planned" in field("state").text()
-table = field("figures")
-assert [table.item(row, 0).text() for row in range(5)][0] == "In tolerance"
-assert float(table.item(0, 2).text()[:-2]) > float(table.item(0, 1).text()[:-2]) + 10.0
-assert field("rounds").rowCount() == len(plan.Rates) >= 3
-assert list(path.Feeds) == feeds and max(plan.NewFeeds) <= 120.0 + 1e-9
+def test_from_the_limits_to_a_planned_program():
+    doc, _, path = prepared()
+    steps = doc.UndoCount
+    menu("Plan feeds...")
+    plan = doc.Plan
+    assert doc.UndoCount == steps + 1
+    type_in("FeedMax", "120")
+    field("foldRounds", QtGui.QToolButton).click()
+    settle()
+    field("Rounds", QtGui.QSpinBox).setValue(3)
+    field("Check", QtGui.QCheckBox).setChecked(False)
+    feeds = list(path.Feeds)
+    press("Plan")
+    assert plan.FeedMax.Value == 120.0 and plan.Rounds == 3
+    wait(lambda: plan.Fingerprint, 120)
+    settle()
+    assert "in tolerance as planned" in field("state").text()
+    table = field("figures")
+    assert [table.item(row, 0).text() for row in range(5)][0] == "In tolerance"
+    assert float(table.item(0, 2).text()[:-2]) > float(table.item(0, 1).text()[:-2]) + 10.0
+    assert field("rounds").rowCount() == len(plan.Rates) >= 3
+    assert list(path.Feeds) == feeds and max(plan.NewFeeds) <= 120.0 + 1e-9
 
-chart = field("feedChart")
-moving = next(i for i, fast in enumerate(plan.Rapid) if not fast)
-assert f"pose {moving + 1}" in chart.text(moving) and "→" in chart.text(moving)
-steps = doc.UndoCount
-press("Apply")
-assert list(path.Feeds) == list(plan.NewFeeds) and plan.Applied
-assert doc.UndoCount == steps + 1, (doc.UndoCount, steps)
-assert "programs have these feeds" in field("state").text()
-assert not field("apply", QtGui.QPushButton).isEnabled()
-assert not doc.Simulation.OutOfDate and abs(doc.Deviation.InTolerance - plan.InTolerance) < 1e-6
-press("Close")
-doc.undo()
-doc.recompute()
-assert list(path.Feeds) == feeds and not plan.Applied and not plan.OutOfDate
-""",
-        window=True,
-    )
+    chart = field("feedChart")
+    moving = next(i for i, fast in enumerate(plan.Rapid) if not fast)
+    assert f"pose {moving + 1}" in chart.text(moving) and "→" in chart.text(moving)
+    steps = doc.UndoCount
+    press("Apply")
+    assert list(path.Feeds) == list(plan.NewFeeds) and plan.Applied
+    assert doc.UndoCount == steps + 1, (doc.UndoCount, steps)
+    assert "programs have these feeds" in field("state").text()
+    assert not field("apply", QtGui.QPushButton).isEnabled()
+    assert not doc.Simulation.OutOfDate and abs(doc.Deviation.InTolerance - plan.InTolerance) < 1e-6
+    press("Close")
+    doc.undo()
+    doc.recompute()
+    assert list(path.Feeds) == feeds and not plan.Applied and not plan.OutOfDate
 
 
-def test_cancel_leaves_all_as_it_was_and_mistakes_are_told(freecad):
-    freecad.run(
-        PREPARE
-        + """
-menu("Plan feeds...")
-plan = doc.Plan
-type_in("keep", "nonsense")
-press("Plan")
-assert "nonsense" in field("state").text() and not plan.Fingerprint
-type_in("keep", "1:9000")
-press("Plan")
-wait(lambda: "no motion in poses 9000" in field("state").text(), 30)
-type_in("keep", "1:1-40")
-assert json.loads(plan.Keep) == [{"program": 1, "first_pose": 1, "last_pose": 40}]
-feeds = list(path.Feeds)
-press("Plan")
-settle()
-press("Cancel")
-wait(lambda: "Cancelled" in field("state").text(), 60)
-assert not plan.Fingerprint and list(path.Feeds) == feeds and not hasattr(doc, "Simulation")
-press("Plan")
-wait(lambda: plan.Fingerprint, 180)
-settle()
-assert list(plan.NewFeeds)[:40] == feeds[:40] and list(plan.NewFeeds) != feeds
-assert any("must not be changed" in one for one in plan.Reasons), plan.Reasons
+def test_cancel_leaves_all_as_it_was_and_mistakes_are_told():
+    doc, _, path = prepared()
+    menu("Plan feeds...")
+    plan = doc.Plan
+    type_in("keep", "nonsense")
+    press("Plan")
+    assert "nonsense" in field("state").text() and not plan.Fingerprint
+    type_in("keep", "1:9000")
+    press("Plan")
+    wait(lambda: "no motion in poses 9000" in field("state").text(), 30)
+    type_in("keep", "1:1-40")
+    assert json.loads(plan.Keep) == [{"program": 1, "first_pose": 1, "last_pose": 40}]
+    feeds = list(path.Feeds)
+    press("Plan")
+    settle()
+    press("Cancel")
+    wait(lambda: "Cancelled" in field("state").text(), 60)
+    assert not plan.Fingerprint and list(path.Feeds) == feeds and not hasattr(doc, "Simulation")
+    press("Plan")
+    wait(lambda: plan.Fingerprint, 180)
+    settle()
+    assert list(plan.NewFeeds)[:40] == feeds[:40] and list(plan.NewFeeds) != feeds
+    assert any("must not be changed" in one for one in plan.Reasons), plan.Reasons
 
-# Motions chosen in the chart stay, too.
-chart = field("feedChart")
-for x, kind in ((0.5, QtCore.QEvent.MouseButtonPress), (0.7, QtCore.QEvent.MouseMove), (0.7, QtCore.QEvent.MouseButtonRelease)):
-    at = QtCore.QPoint(int(chart.width() * x), chart.height() // 2)
-    event = QtGui.QMouseEvent(kind, QtCore.QPointF(at), QtCore.Qt.LeftButton, QtCore.Qt.LeftButton, QtCore.Qt.NoModifier)
-    QtGui.QApplication.sendEvent(chart, event)
-settle()
-press("Leave these as they are")
-first, last = chart.chosen
-assert field("keep").text() == f"1:1-40, {first + 1}-{last + 1}", field("keep").text()
-assert plan.OutOfDate and "plan again" in field("state").text()
-press("Close")
-assert not Gui.Control.activeDialog()
-""",
-        window=True,
-    )
+    # Motions chosen in the chart stay, too.
+    chart = field("feedChart")
+    for x, kind in (
+        (0.5, QtCore.QEvent.MouseButtonPress),
+        (0.7, QtCore.QEvent.MouseMove),
+        (0.7, QtCore.QEvent.MouseButtonRelease),
+    ):
+        at = QtCore.QPoint(int(chart.width() * x), chart.height() // 2)
+        event = QtGui.QMouseEvent(
+            kind,
+            QtCore.QPointF(at),
+            QtCore.Qt.LeftButton,
+            QtCore.Qt.LeftButton,
+            QtCore.Qt.NoModifier,
+        )
+        QtGui.QApplication.sendEvent(chart, event)
+    settle()
+    press("Leave these as they are")
+    first, last = chart.chosen
+    assert field("keep").text() == f"1:1-40, {first + 1}-{last + 1}", field("keep").text()
+    assert plan.OutOfDate and "plan again" in field("state").text()
+    press("Close")
+    assert not Gui.Control.activeDialog()
 
 
-def test_faces_are_ground_from_nothing_by_one_button(freecad):
-    freecad.run(
-        """
-from support.hands import *
-start()
-doc = FreeCAD.newDocument("work")
-doc.UndoMode = 1
-part = doc.addObject("Part::Feature", "Block")
-part.Shape = Part.makeCylinder(80, 30, FreeCAD.Vector(0, 0, 0), FreeCAD.Vector(0, 0, 1), 40)
-doc.recompute()
-Gui.activeDocument().activeView().viewIsometric()
-Gui.SendMsgToActiveView("ViewFit")
-Gui.Selection.addSelection(doc.Name, "Block", "Face1")
-settle()
-menu("Grind these faces...")
-plan, path = doc.Plan, doc.RasterPath
-assert plan.LayPasses and path.Proposed
-before = [list(path.Feeds), list(path.Poses)]
-wait(lambda: plan.Fingerprint, 400)
-settle()
-assert [list(path.Feeds), list(path.Poses)] == before, "nothing is changed before it is applied"
-assert "in tolerance" in field("state").text()
-assert plan.InTolerance > 80.0, (plan.InTolerance, list(plan.Reasons))
-table = field("rounds")
-names = [table.item(row, 0).text() for row in range(table.rowCount())]
-assert names[0].endswith(" mm") and "now" in names, names
-panel = [area for area in visible(QtGui.QScrollArea) if area.isAncestorOf(field("feedChart"))][0]
-panel.ensureWidgetVisible(field("feedChart"))
-path.ViewObject.Visibility = False
-picture("workbench-plan")
-steps = doc.UndoCount
-press("Apply")
-assert doc.UndoCount == steps + 1 and plan.Applied and not path.Proposed
-assert list(path.Feeds) == list(plan.NewFeeds)
-assert not doc.Simulation.OutOfDate
-press("Close")
-doc.undo()
-doc.recompute()
-assert [list(path.Feeds), list(path.Poses)] == before and not plan.Applied
-""",
-        window=True,
-    )
+@pytest.mark.slow
+def test_faces_are_ground_from_nothing_by_one_button():
+    whole_screen()
+    start()
+    doc = FreeCAD.newDocument("work")
+    doc.UndoMode = 1
+    part = doc.addObject("Part::Feature", "Block")
+    part.Shape = Part.makeCylinder(80, 30, FreeCAD.Vector(0, 0, 0), FreeCAD.Vector(0, 0, 1), 40)
+    doc.recompute()
+    Gui.activeDocument().activeView().viewIsometric()
+    Gui.SendMsgToActiveView("ViewFit")
+    Gui.Selection.addSelection(doc.Name, "Block", "Face1")
+    settle()
+    menu("Grind these faces...")
+    plan, path = doc.Plan, doc.RasterPath
+    assert plan.LayPasses and path.Proposed
+    before = [list(path.Feeds), list(path.Poses)]
+    wait(lambda: plan.Fingerprint, 400)
+    settle()
+    assert [list(path.Feeds), list(path.Poses)] == before, "nothing is changed before it is applied"
+    assert "in tolerance" in field("state").text()
+    assert plan.InTolerance > 80.0, (plan.InTolerance, list(plan.Reasons))
+    table = field("rounds")
+    names = [table.item(row, 0).text() for row in range(table.rowCount())]
+    assert names[0].endswith(" mm") and "now" in names, names
+    panel = [area for area in visible(QtGui.QScrollArea) if area.isAncestorOf(field("feedChart"))][
+        0
+    ]
+    panel.ensureWidgetVisible(field("feedChart"))
+    path.ViewObject.Visibility = False
+    picture("workbench-plan")
+    steps = doc.UndoCount
+    press("Apply")
+    assert doc.UndoCount == steps + 1 and plan.Applied and not path.Proposed
+    assert list(path.Feeds) == list(plan.NewFeeds)
+    assert not doc.Simulation.OutOfDate
+    press("Close")
+    doc.undo()
+    doc.recompute()
+    assert [list(path.Feeds), list(path.Poses)] == before and not plan.Applied

@@ -3,10 +3,15 @@
 import re
 import shutil
 import subprocess
+from pathlib import Path
 
 import pytest
+import FreeCAD
+import FreeCADGui as Gui
 
-from support.freecad import ROOT, FreeCad
+import beltgrinding
+from support.freecad import FreeCad, ROOT
+from support.hands import field, menu, wait
 
 BUILD = ROOT / "build" / "release"
 
@@ -22,87 +27,70 @@ def content(tmp_path_factory):
     return folder
 
 
+@pytest.mark.slow
 def test_an_unpacked_release_grinds_the_example(content, tmp_path):
     freecad = FreeCad(tmp_path, link=False)
     mod = tmp_path / ".local" / "share" / "FreeCAD" / "Mod" / "BeltGrinding"
     shutil.copytree(content, mod)
-    freecad.run(
-        f"""
-from support.hands import *
-Gui.activateWorkbench("BeltGrindingWorkbench")
-menu("Example: compressor blade")
-doc = FreeCAD.ActiveDocument
-menu("Simulate")
-wait(lambda: doc.getObject("Simulation") is not None, 200)
-import beltgrinding
-assert beltgrinding.__file__.startswith({str(mod)!r}), beltgrinding.__file__
-assert beltgrinding.core.__file__.startswith({str(mod)!r}), beltgrinding.core.__file__
-menu("Help")
-assert "tutorial" in field("BeltGrinding_ManualView").toPlainText().lower()
-""",
-        window=True,
-        fresh=True,
-    )
+    freecad.call(ground_by, mod, window=True, fresh=True)
 
 
-def test_its_package_xml_holds_what_freecad_demands(freecad, content):
+def ground_by(mod):
+    Gui.activateWorkbench("BeltGrindingWorkbench")
+    menu("Example: compressor blade")
+    doc = FreeCAD.ActiveDocument
+    menu("Simulate")
+    wait(lambda: doc.getObject("Simulation") is not None, 200)
+    assert beltgrinding.__file__.startswith(str(mod)), beltgrinding.__file__
+    assert beltgrinding.core.__file__.startswith(str(mod)), beltgrinding.core.__file__
+    menu("Help")
+    assert "tutorial" in field("BeltGrinding_ManualView").toPlainText().lower()
+
+
+@pytest.mark.freecad
+def test_its_package_xml_holds_what_freecad_demands(content):
     version = re.search(r"<version>(.*)</version>", (ROOT / "package.xml").read_text()).group(1)
-    freecad.run(
-        f"""
-import re
-from pathlib import Path
-import FreeCAD
-folder = Path({str(content)!r})
-data = FreeCAD.Metadata(str(folder / "package.xml"))
-assert data.Name and not set(data.Name) & set('/\\\\?%*:|"<>'), data.Name
-assert data.Version == {version!r} and re.fullmatch(r"\\d+[.]\\d+[.]\\d+", data.Version)
-assert data.Description
-assert data.Maintainer and all(one["email"] for one in data.Maintainer)
-assert data.License[0]["name"] == "LGPL-2.1-or-later"
-assert (folder / data.License[0]["file"]).is_file() and (folder / data.Icon).is_file()
-bench, = data.Content["workbench"]
-assert (folder / bench.Subdirectory / bench.Icon).is_file(), bench.Icon
-assert f"class {{bench.Classname}}(" in (folder / bench.Subdirectory / "InitGui.py").read_text()
-depends = {{one["package"] if isinstance(one, dict) else one for one in bench.Depend}}
-assert depends == {{"numpy", "jsonschema", "matplotlib", "Pillow"}}, depends
-"""
-    )
+    folder = Path(content)
+    data = FreeCAD.Metadata(str(folder / "package.xml"))
+    assert data.Name and not set(data.Name) & set('/\\?%*:|"<>'), data.Name
+    assert data.Version == version and re.fullmatch(r"\d+[.]\d+[.]\d+", data.Version)
+    assert data.Description
+    assert data.Maintainer and all(one["email"] for one in data.Maintainer)
+    assert data.License[0]["name"] == "LGPL-2.1-or-later"
+    assert (folder / data.License[0]["file"]).is_file() and (folder / data.Icon).is_file()
+    (bench,) = data.Content["workbench"]
+    assert (folder / bench.Subdirectory / bench.Icon).is_file(), bench.Icon
+    assert f"class {bench.Classname}(" in (folder / bench.Subdirectory / "InitGui.py").read_text()
+    depends = {one["package"] if isinstance(one, dict) else one for one in bench.Depend}
+    assert depends == {"numpy", "jsonschema", "matplotlib", "Pillow"}, depends
 
 
-def test_the_addon_manager_installs_it(freecad, content, tmp_path):
+@pytest.mark.freecad
+def test_the_addon_manager_installs_it(content, tmp_path):
     archive = shutil.make_archive(str(tmp_path / "BeltGrinding"), "zip", content)
-    output = freecad.run(
-        f"""
-import sys
-from pathlib import Path
-import FreeCAD
-try:
-    from addonmanager_installer import AddonInstaller
-    from addonmanager_devmode_metadata_checker import MetadataValidators
-    from addonmanager_metadata import MetadataReader
-    from Addon import Addon
-except ImportError:
-    print("no installer", file=sys.stderr)
-else:
-    addon = Addon("BeltGrindingZip", {archive!r}, Addon.Status.NOT_INSTALLED, "main")
-    installer = AddonInstaller(addon, [])
-    installer.installation_path = {str(tmp_path)!r}
-    failures = []
-    installer.failure.connect(lambda *told: failures.append(told))
-    assert installer.run() and not failures, failures
-    folder = Path({str(tmp_path)!r}, "BeltGrindingZip")
-    assert (folder / "InitGui.py").is_file() and list(folder.glob("beltgrinding_core*.so"))
-    addon.metadata = MetadataReader.from_file(str(folder / "package.xml"))
-    addon.extract_metadata_dependencies(addon.metadata)
-    assert addon.display_name
-    benches = addon.metadata.content["workbench"]
-    needed = {{one.package for one in benches[0].depend}}
-    assert needed == {{"numpy", "jsonschema", "matplotlib", "Pillow"}}
-    wrong = MetadataValidators().validate_top_level(addon)
-    wrong += MetadataValidators().validate_content(addon)
-    # There is no public repository yet, and none is invented.
-    assert wrong == ["No <url> elements found, at least a repo url must be provided"], wrong
-"""
-    )
-    if "no installer" in output:
+    try:
+        from addonmanager_installer import AddonInstaller
+        from addonmanager_devmode_metadata_checker import MetadataValidators
+        from addonmanager_metadata import MetadataReader
+        from Addon import Addon
+    except ImportError:
         pytest.skip("the Addon Manager of this FreeCAD installs from the net only")
+    else:
+        addon = Addon("BeltGrindingZip", archive, Addon.Status.NOT_INSTALLED, "main")
+        installer = AddonInstaller(addon, [])
+        installer.installation_path = str(tmp_path)
+        failures = []
+        installer.failure.connect(lambda *told: failures.append(told))
+        assert installer.run() and not failures, failures
+        folder = Path(str(tmp_path), "BeltGrindingZip")
+        assert (folder / "InitGui.py").is_file() and list(folder.glob("beltgrinding_core*.so"))
+        addon.metadata = MetadataReader.from_file(str(folder / "package.xml"))
+        addon.extract_metadata_dependencies(addon.metadata)
+        assert addon.display_name
+        benches = addon.metadata.content["workbench"]
+        needed = {one.package for one in benches[0].depend}
+        assert needed == {"numpy", "jsonschema", "matplotlib", "Pillow"}
+        wrong = MetadataValidators().validate_top_level(addon)
+        wrong += MetadataValidators().validate_content(addon)
+        # There is no public repository yet, and none is invented.
+        assert wrong == ["No <url> elements found, at least a repo url must be provided"], wrong

@@ -2,23 +2,21 @@
 
 import json
 import re
+from pathlib import Path
 
-from support import pictures
+import pytest
+
+from support import hands, pictures, tutorial
 from support.freecad import ROOT
 
+pytestmark = pytest.mark.freecad(window=True)
 
-def test_the_tutorial_can_be_walked_and_its_figures_are_right(freecad):
-    freecad.run(
-        """
-import json
-from pathlib import Path
-from support import hands, tutorial
-figures = tutorial.walk()
-Path("walked.json").write_text(json.dumps([figures, *hands.walked()]))
-""",
-        window=True,
-    )
-    figures, release, names = json.loads((freecad.folder / "walked.json").read_text())
+
+@pytest.mark.slow
+def test_the_tutorial_can_be_walked_and_its_figures_are_right():
+    figures = tutorial.walk()
+    Path("walked.json").write_text(json.dumps([figures, *hands.walked()]))
+    figures, release, names = json.loads((Path.cwd() / "walked.json").read_text())
     page = (ROOT / "docs" / "tutorial.md").read_text()
     assert re.findall(r"images/(\S+)\.png", page) == names
     pictures.check(release, names)

@@ -76,7 +76,7 @@ def test_a_suite_without_its_last_line_is_a_failure(ci, test):
 def test_a_suite_that_fails_after_its_last_line_is_a_failure(ci):
     status, lines = ci(test="echo 10 passed, 0 failed, 2 skipped; exit 7")
     assert status == 1 and lines[-1] == "12 passed, 1 failed, 3 skipped"
-    assert lines[-2] == "tools/test ended with status 7."
+    assert lines[-2] == "tools/test --all ended with status 7."
 
 
 def test_a_freecad_whose_tests_fail_is_a_failure(ci):

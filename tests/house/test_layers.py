@@ -1,4 +1,4 @@
-"""The layers of the Python package: docs/architecture.md's table against what is really imported.
+"""The layers of the Python package: docs/layers.md's table against what is really imported.
 
 All imports count, those inside functions too. What is imported by being a folder above (a package's
 ``__init__`` when one of its modules is imported) does not: these are what macros call, and nothing
@@ -66,10 +66,10 @@ def _imported(node, package):
 
 
 def table():
-    """{layer: layers that it may import}, in the order of docs/architecture.md."""
-    text = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    """{layer: layers that it may import}, in the order of docs/layers.md."""
+    text = (ROOT / "docs" / "layers.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| `([\w./]+)` \| [^|]* \| ([^|]*) \|$", text, re.MULTILINE)
-    assert rows, "docs/architecture.md has no table of layers"
+    assert rows, "docs/layers.md has no table of layers"
     return {
         _layer_name(place): {_layer_name(name) for name in re.findall(r"`([\w./]+)`", allowed)}
         for place, allowed in rows
@@ -167,7 +167,7 @@ def test_every_layer_imports_what_the_table_says():
         wrong = [how for target, how in real[layer].items() if target not in allowed]
         assert not wrong, f"{layer} may not: {wrong}"
         idle = allowed - set(real[layer])
-        assert not idle, f"docs/architecture.md lets {layer} import {sorted(idle)}; it does not"
+        assert not idle, f"docs/layers.md lets {layer} import {sorted(idle)}; it does not"
 
 
 def test_a_layer_sees_only_those_above_it_in_the_table():

@@ -7,7 +7,7 @@ from PIL import Image, ImageDraw
 from support import pictures
 
 KEPT = "workbench-simulation"
-PLACE = (60, 420)  # in the panel
+PLACE = (150, 572)  # where the panel is empty
 
 
 @pytest.fixture

@@ -1,11 +1,14 @@
 """The rooms of src/: what CMake links, what the sources include, and what docs/architecture.md says are
 the same; a room cannot reach what it has not declared."""
 
+import html
 import json
 import os
 import re
 import shlex
 import subprocess
+from importlib.machinery import SourceFileLoader
+from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
 
 import pytest
@@ -114,6 +117,28 @@ def test_the_table_says_what_is_linked_and_included():
         else:
             assert public | private == expected, room
         assert used == packages, room
+
+
+def test_the_picture_shows_the_rooms():
+    tool = SourceFileLoader("rooms", str(ROOT / "tools" / "rooms"))
+    rooms = module_from_spec(spec_from_loader("rooms", tool))
+    tool.exec_module(rooms)
+    titles = re.findall(r"<title>(.*?)</title>", rooms.PICTURE.read_text())
+    drawn = {tuple(html.unescape(title).split("->")) for title in titles} - {("rooms",)}
+    built = json.loads((BUILD / "rooms.json").read_text())
+    if set(built) != set(ROOMS):
+        pytest.skip("not every room is built here: its packages are missing")
+    shown_rooms = {(name,) for name in built} - {(name,) for name in rooms.HIDDEN}
+    assert drawn == shown_rooms | rooms.ways(built), "run tools/rooms"
+
+
+def test_the_page_is_short():
+    """Six headed sections between the rooms and the links, of at most 120 words each."""
+    page = (ROOT / "docs" / "architecture.md").read_text()
+    sections = dict(part.split("\n", 1) for part in page.split("\n## ")[1:])
+    assert list(sections)[0] == "Rooms" and list(sections)[-1] == "Further pages"
+    words = {name: len(text.split()) for name, text in list(sections.items())[1:-1]}
+    assert len(words) == 6 and max(words.values()) <= 120, words
 
 
 def test_no_circle():

@@ -3,15 +3,12 @@
 import re
 import shutil
 import subprocess
-import sys
 
 import pytest
 
 from support.freecad import ROOT
 
-sys.path.insert(0, str(ROOT / "tools"))
-
-from check_site import check  # noqa: E402
+from check_site import check
 
 INDEX = '<h1 id="top-of-it">T</h1><a href="a.html#here">a</a><a href="https://x.org/">x</a>{}'
 OTHER = '<p id="here"><a href="index.html#top-of-it">back</a><a href="#here">self</a>'

@@ -82,6 +82,7 @@ def test_pytest_fails_where_it_is_strict(tmp_path, strict):
     )
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(tmp_path)]
     environment = {**os.environ, "BELTGRINDING_STRICT": strict, "CI": ""}
+    environment["PYTHONPATH"] = os.pathsep.join([str(ROOT / "tests"), *sys.path])
     command += ["--continue-on-collection-errors", "--rootdir", str(tmp_path)]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, cwd=tmp_path)
     last = done.stdout.splitlines()[-1]

@@ -1,5 +1,6 @@
-"""tools/test passes all suites, two at a time, and adds up their figures; ctest and pytest are played."""
+"""tools/test --all passes all suites, two at a time, and adds up their figures; ctest and pytest are played."""
 
+import ast
 import os
 import re
 import signal
@@ -24,6 +25,7 @@ PLAY = f"""#!/usr/bin/env bash
 case $1 in
 *.py) exec {sys.executable} "$@" ;;
 esac
+echo "$@" >>"$PLAYED/asked"
 while (($# > 1)); do
     case $1 in
     --junitxml | --output-junit) report=$2 ;;
@@ -58,12 +60,12 @@ def checkout(tmp_path):
         if any(folder.glob("test_*.py")):
             (checkout / "tests" / folder.name).mkdir(exist_ok=True)
 
-    def start(**suites):
+    def start(*options, **suites):
         for name, text in suites.items():
             (tmp_path / name).write_text(text)
         path = f"{checkout / 'bin'}:{os.environ['PATH']}"
         return subprocess.Popen(
-            ["bash", checkout / "tools" / "test"],
+            ["bash", checkout / "tools" / "test", *options],
             env={**os.environ, "PATH": path, "PLAYED": str(tmp_path)},
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -71,9 +73,9 @@ def checkout(tmp_path):
             start_new_session=True,
         )
 
-    def run(**suites):
+    def run(*options, **suites):
         """(status, lines of stdout, what was said besides)."""
-        process = start(**suites)
+        process = start(*options or ["--all"], **suites)
         told, besides = process.communicate(timeout=60)
         return process.returncode, told.splitlines(), besides
 
@@ -89,8 +91,7 @@ def suites_of():
 def test_every_suite_is_passed_two_at_a_time(checkout):
     status, lines, _ = checkout(gui="sleep 1", workbench="sleep 1")
     assert status == 0
-    # One test of each, and both formatters.
-    assert lines[-1] == f"{len(suites_of()) + 2} passed, 0 failed, 0 skipped"
+    assert lines[-1] == f"{len(suites_of())} passed, 0 failed, 0 skipped"
     order = (checkout.folder / "order").read_text().splitlines()
     assert {line.removeprefix("end ") for line in order if line.startswith("end")} == suites_of()
     assert set(order[:2]) == {"begin gui", "begin workbench"}
@@ -100,12 +101,83 @@ def test_every_suite_is_passed_two_at_a_time(checkout):
         assert f"said by {name}" in lines[at + 1 : at + 3]
 
 
+def test_what_takes_long_is_left_to_all(checkout):
+    process = checkout.start()
+    told, besides = process.communicate(timeout=60)
+    passed = {line.split()[1] for line in (checkout.folder / "order").read_text().splitlines()}
+    assert passed < suites_of() and {"gui", "workbench", "core"} <= passed
+    assert told.splitlines()[-1] == f"{len(passed)} passed, 0 failed, 0 skipped"
+    for name in suites_of() - passed:
+        assert re.search(rf"Not run, .*\b{name}\b.*tools/test --all", besides)
+
+
+# What leaves tests of a suite out, or takes some alone.
+CHOOSES = re.compile(
+    r"(?:^| )(-[km] .*?|--(?:deselect|ignore|last-failed|lf|maxfail)\S*|-x)(?= -|$)"
+)
+
+
+@pytest.mark.parametrize("options, left_out", [([], "-m not slow"), (["--all"], None)])
+def test_what_is_marked_slow_is_left_to_all_and_nothing_else(checkout, options, left_out):
+    """Nothing is left out by another way: not here, nor by the settings of pytest."""
+    process = checkout.start(
+        *options, gui="echo '7 tests left out'", house="echo '5 tests left out'"
+    )
+    _, besides = process.communicate(timeout=60)
+    lines = (checkout.folder / "asked").read_text().splitlines()
+    begin = "-m pytest "
+    asked = [line.removeprefix(begin) for line in lines if line.startswith(begin)]
+    assert len(asked) >= 4
+    for line in asked:
+        assert CHOOSES.findall(line) == ([left_out] if left_out else []), line
+        assert re.search(r" tests/\w+$", line), line
+    assert ("and 12 tests marked slow" in besides) == (not options)
+    settings = (ROOT / "pyproject.toml").read_text("utf-8").partition("[tool.pytest")[2]
+    assert "addopts" not in settings.partition("\n[")[0]
+
+
+# Files all of whose tests are slow: the file whose quick tests are of the same kind.
+WHOLLY_SLOW = {
+    "gui/test_language.py": "gui/test_translations.py",
+    "gui/test_panel_width.py": "gui/test_translations.py",
+    "gui/test_tutorial.py": "gui/test_work.py",
+    "workbench/test_study_slurm.py": "workbench/test_study_cluster.py",
+}
+
+
+def slow(tests):
+    """Whether functions (nodes) are marked slow, not by some parameters alone."""
+    return [any(ast.unparse(one) == "pytest.mark.slow" for one in t.decorator_list) for t in tests]
+
+
+def test_each_file_has_a_quick_test_or_a_quick_neighbour():
+    wholly = set()
+    for path in ROOT.glob("tests/*/test_*.py"):
+        tree = ast.parse(path.read_text("utf-8"))
+        tests = [
+            node
+            for node in tree.body
+            if isinstance(node, ast.FunctionDef) and node.name.startswith("test_")
+        ]
+        of_file = [one for one in tree.body if ast.unparse(one).startswith("pytestmark")]
+        assert not any("mark.slow" in ast.unparse(one) for one in of_file), path
+        if tests and all(slow(tests)):
+            wholly.add(f"{path.parent.name}/{path.name}")
+    assert wholly == set(WHOLLY_SLOW)
+    assert not wholly & set(WHOLLY_SLOW.values())
+
+
+def test_another_option_is_refused(checkout):
+    process = checkout.start("--fast")
+    assert "usage: tools/test" in process.communicate(timeout=60)[1] and process.returncode == 2
+
+
 def test_failures_and_skips_are_counted(checkout):
     cases = '<testcase name="a"/><testcase name="b"><failure/></testcase>'
     cases += '<testcase name="c"><skipped/></testcase>'
     status, lines, _ = checkout(fuzz=f"echo '<t>{cases}</t>' >\"$report\"; false")
     assert status == 1
-    assert lines[-1] == f"{len(suites_of()) + 2} passed, 1 failed, 1 skipped"
+    assert lines[-1] == f"{len(suites_of())} passed, 1 failed, 1 skipped"
 
 
 @pytest.mark.parametrize(
@@ -115,7 +187,7 @@ def test_failures_and_skips_are_counted(checkout):
 def test_a_suite_that_ends_badly_is_a_failure(checkout, ends, passed):
     status, lines, besides = checkout(house=ends)
     assert status == 1 and "The suite house ended" in besides
-    assert lines[-1] == f"{len(suites_of()) + 1 + passed} passed, 1 failed, 0 skipped"
+    assert lines[-1] == f"{len(suites_of()) - 1 + passed} passed, 1 failed, 0 skipped"
 
 
 def test_a_skip_of_the_cpp_tests_that_may_not_be_is_a_failure(checkout, monkeypatch):
@@ -123,7 +195,7 @@ def test_a_skip_of_the_cpp_tests_that_may_not_be_is_a_failure(checkout, monkeypa
     skipped = '<t><testcase name="a"/><testcase name="b"><skipped/></testcase></t>'
     status, lines, besides = checkout(core=f"echo '{skipped}' >\"$report\"")
     assert status == 1 and "b skipped, and that is not in" in besides
-    assert lines[-1] == f"{len(suites_of()) + 2} passed, 1 failed, 0 skipped"
+    assert lines[-1] == f"{len(suites_of())} passed, 1 failed, 0 skipped"
 
 
 def test_an_interrupt_reaches_the_suites(checkout):

@@ -72,6 +72,8 @@ def test_the_citation():
 def test_the_hooks_of_pre_commit_are_the_houses_own():
     hooks = yaml.safe_load((ROOT / ".pre-commit-config.yaml").read_text())["repos"]
     assert [one["repo"] for one in hooks] == ["local"]  # nothing is fetched
-    (hook,) = hooks[0]["hooks"]
-    assert os.access(ROOT / hook["entry"], os.X_OK)
-    assert subprocess.run(["bash", "-n", ROOT / hook["entry"]]).returncode == 0
+    entries = [hook["entry"] for hook in hooks[0]["hooks"]]
+    assert entries == ["tools/format", "tools/subject"]
+    for entry in entries:
+        assert os.access(ROOT / entry, os.X_OK)
+        assert subprocess.run(["bash", "-n", ROOT / entry]).returncode == 0

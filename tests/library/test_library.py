@@ -164,7 +164,7 @@ set(after "${CMAKE_CXX_STANDARD}|${CMAKE_CXX_FLAGS}|${CMAKE_BUILD_TYPE}|${CMAKE_
 if(NOT before STREQUAL after)
   message(FATAL_ERROR "${before} became ${after}")
 endif()
-foreach(target test_contact contact_bench translations beltgrinding_core package_source)
+foreach(target test_gap contact_bench translations beltgrinding_core package_source)
   if(TARGET ${target})
     message(FATAL_ERROR "there is a target ${target}")
   endif()

@@ -1,19 +1,17 @@
 """The reader of APT: against the truth where shared data is there, and by small programs."""
 
 import os
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+from beltgrinding.base import frames
+from beltgrinding.programs.program import ProgramError
+from beltgrinding.programs.languages.apt import reader as apt
+from beltgrinding.programs.registry import read_program
 
-from beltgrinding.base import frames  # noqa: E402
-from beltgrinding.programs.program import ProgramError  # noqa: E402
-from beltgrinding.programs.readers import apt  # noqa: E402
-from beltgrinding.programs.registry import read_program  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 PROGRAMS = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared")) / "data" / "programs"
 needs_shared = pytest.mark.skipif(not PROGRAMS.is_dir(), reason=f"no shared data at {PROGRAMS}")
@@ -103,7 +101,6 @@ def test_arcs(tmp_path):
 @pytest.mark.parametrize(
     "text, culprit",
     [
-        ("CYCLE/DRILL,10", "cycle"),
         ("GOHOME", "GOHOME"),
         ("GOTO/1,2", "2 values"),
         ("GOTO/1,2,x", "no number"),
@@ -124,8 +121,9 @@ def test_what_is_not_known_is_said_with_its_line(tmp_path, text, culprit):
 
 def test_units_and_compensation_are_not_silent(tmp_path):
     program = cl(tmp_path, "GOTO/1,2,3\nTLCOMP/ON,LEFT\nGOTO/1,2,4\n", units="")
-    assert ["UNITS" in str(p) or "TLCOMP" in str(p) for p in program.problems] == [True, True]
-    assert len(program.motions) == 2
+    assert ["neither mm nor inch" in str(p) for p in program.problems] == [True, False]
+    assert "TLCOMP" in str(program.problems[1])
+    assert not positions(program) and program.asks_units and program.counted() == (0, 2)
     with pytest.raises(ProgramError, match="p.apt:1: UNITS"):
         cl(tmp_path, "", units="UNITS/FURLONGS\n")
 
@@ -169,3 +167,29 @@ def test_feet_per_minute(tmp_path):
     assert program.motions[0].speed_mm_s == pytest.approx(2 * 304.8 / 60)
     assert program.motions[1].speed_mm_s is None
     assert [p.line for p in program.problems] == [4]
+
+
+def test_coordinates_of_the_world_stay_whatever_a_system_says(tmp_path):
+    """CAMWorks' programs: TRNTYP/WORLD before each CSYS; a GOTO without an axis has the system's."""
+    down = "CSYS/-1.,0,0,5,0,1.,0,6,0,0,-1.,7"
+    flat = "CSYS/1.,0,0,0,0,1.,0,0,0,0,1.,0"
+    text = f"""UNIT/MM
+FEDRAT/600,MMPM
+TRNTYP/WORLD,0,0,0
+{down}
+GOTO/1,2,3,0,0,-1
+GOTO/2,2,3
+TRNTYP/WORLD,0,0,0
+{flat}
+GOTO/3,2,1
+FINI
+"""
+    path = tmp_path / "p.apt"
+    path.write_text(text)
+    program = read_program(path)
+    assert not program.problems and {m.base for m in program.motions} == {""}
+    assert [m.pose[2, 2] for m in program.motions] == [1.0, 1.0, -1.0]
+    assert [m.pose[:3, 3].tolist() for m in program.motions] == [[1, 2, 3], [2, 2, 3], [3, 2, 1]]
+    path.write_text(text.replace("TRNTYP/WORLD,0,0,0\n", ""))  # then they are of the system
+    program = read_program(path)
+    assert {m.base for m in program.motions} == {"", down.replace("/", " ")}

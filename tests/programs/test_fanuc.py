@@ -3,19 +3,17 @@
 import math
 import os
 import re
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+from beltgrinding.base import frames
+from beltgrinding.programs.program import ProgramError
+from beltgrinding.programs.languages.fanuc import reader as fanuc
+from support.cost import growth
 
-from beltgrinding.base import frames  # noqa: E402
-from beltgrinding.programs.program import ProgramError  # noqa: E402
-from beltgrinding.programs.readers.fanuc import reader as fanuc  # noqa: E402
-from support.cost import growth  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 PROGRAMS = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared")) / "data" / "programs"
 needs_shared = pytest.mark.skipif(not PROGRAMS.is_dir(), reason=f"no shared data at {PROGRAMS}")

@@ -1,18 +1,16 @@
 """The reader of G-code: against the truth where shared data is there, and by small programs."""
 
 import os
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+from beltgrinding.base import frames
+from beltgrinding.programs.program import ProgramError
+from beltgrinding.programs.languages.gcode import reader as gcode
 
-from beltgrinding.base import frames  # noqa: E402
-from beltgrinding.programs.program import ProgramError  # noqa: E402
-from beltgrinding.programs.readers import gcode  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 PROGRAMS = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared")) / "data" / "programs"
 needs_shared = pytest.mark.skipif(not PROGRAMS.is_dir(), reason=f"no shared data at {PROGRAMS}")
@@ -20,7 +18,7 @@ needs_shared = pytest.mark.skipif(not PROGRAMS.is_dir(), reason=f"no shared data
 
 def nc(tmp_path, source, end="\nM30\n"):
     (tmp_path / "p.nc").write_bytes((source + end).encode("latin-1"))
-    return gcode.read(tmp_path / "p.nc")
+    return gcode.read(tmp_path / "p.nc", "mm")  # most say no G21
 
 
 def positions(program):
@@ -119,7 +117,7 @@ def test_arcs(tmp_path, text, middle):
         ("M98 P100", "subprogram"),
         ("G2 X9 I1", "centre"),
         ("G2 X9 R1", "R does not fit"),
-        ("G3 X0 Z5 I-3", "helix"),
+        ("G3 X0 Z5 R-3", "R does not fit"),
         ("G1 X1 X2", "twice"),
         ("IF [#1 EQ 2] GOTO 10", "variables"),
         ("FOO", "cannot read"),
@@ -135,7 +133,7 @@ def test_what_is_not_known_is_said_with_its_line(tmp_path, text, culprit):
 
 
 def test_frames_in_the_control_are_said(tmp_path):
-    program = nc(tmp_path, "G0 X0 Y0 Z0\nTRANS X10\nG1 X1\nX2\nTRANS\nG1 X3\n")
+    program = nc(tmp_path, "G0 X0 Y0 Z0\nTRANS X=R1\nG1 X1\nX2\nTRANS\nG1 X3\n")
     assert [p.line for p in program.problems][0] == 2
     assert positions(program) == [[0, 0, 0], [3, 0, 0]]
     program = nc(tmp_path, "G0 X0 Y0 Z0\nG95\nG1 X1 F0.1\nG41 X2\n")

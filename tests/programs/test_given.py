@@ -96,7 +96,7 @@ def test_registers_and_offsets(tmp_path):
 
 def test_what_the_program_sets_is_not_taken_from_the_file(tmp_path):
     values = {"PR[15]": frame(1, 2, 3, 0, 0, 0), "R[5]": 50}
-    text = tp("PR[15,3]=R[5]", "L P[1] 9mm/sec FINE Offset,PR[15]", "L P[2] 9mm/sec FINE")
+    text = tp("PR[15]=VR[5]", "L P[1] 9mm/sec FINE Offset,PR[15]", "L P[2] 9mm/sec FINE")
     program = read_program(write(tmp_path, "p.ls", text, variables=values))
     assert program.motions[0].pose is None
     assert any("set by the program" in str(p) and p.line == 4 for p in program.problems)
@@ -354,7 +354,7 @@ def test_values_of_a_job_are_a_file_or_an_object(tmp_path):
 
 
 def test_the_schema_is_published():
-    assert set(schemas.schema("values")["properties"]) == {"bases", "tools", "variables"}
+    assert set(schemas.schema("values")["properties"]) == {"units", "bases", "tools", "variables"}
 
 
 def test_a_damaged_file_is_refused_or_read_whatever_its_bytes(tmp_path):

@@ -1,18 +1,16 @@
 """What it costs to read a program grows in proportion to its size, in every language."""
 
-import sys
 from pathlib import Path
 
 import pytest
 
-HERE = Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE), str(HERE.parents[1] / "Mod" / "BeltGrinding")]
+import growing
+from beltgrinding.programs.patch.patch import patch
+from beltgrinding.programs.program import ProgramError
+from beltgrinding.programs.registry import READERS, read_program
+from support.cost import cost, growth
 
-import growing  # noqa: E402
-from beltgrinding.programs.patch.patch import patch  # noqa: E402
-from beltgrinding.programs.program import ProgramError  # noqa: E402
-from beltgrinding.programs.registry import READERS, read_program  # noqa: E402
-from support.cost import cost, growth  # noqa: E402
+HERE = Path(__file__).resolve().parent
 
 LEAST = 4e-3  # s of processor time; below, what does not grow would hide what does
 MOST = 200_000  # the largest size: what takes less time than LEAST there is no trouble

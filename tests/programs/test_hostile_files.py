@@ -3,20 +3,18 @@
 import errno
 import gzip
 import os
-import sys
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+from beltgrinding.base import regular_files
+from beltgrinding.job import inputs
+from beltgrinding.programs.patch.patch import patch, read_changes
+from beltgrinding.programs.program import ProgramError, Program, Motion, Unknown
+from beltgrinding.programs.languages.rapid import data as rapid_data
+from beltgrinding.programs.registry import READERS, read_program
 
-from beltgrinding.base import regular_files  # noqa: E402
-from beltgrinding.job import inputs  # noqa: E402
-from beltgrinding.programs.patch.patch import patch, read_changes  # noqa: E402
-from beltgrinding.programs.program import ProgramError, Program, Motion, Unknown  # noqa: E402
-from beltgrinding.programs.readers.rapid import data as rapid_data  # noqa: E402
-from beltgrinding.programs.registry import READERS, read_program  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 SUFFIXES = sorted(READERS)
 HUGE = 300 << 20  # bytes, of a file without a block on the disk
@@ -135,16 +133,24 @@ def test_what_cannot_be_written_is_said(tmp_path):
     [
         "LDAT_ACT=1\nBAS(#CP_PARAMS,0.1)",
         "$APO=1\n$VEL=2",
-        "$TOOL=" + "7" * 5000,
         "V[1e300]=1",
         "FOR I=1E308 TO 1E308\nENDFOR",
         "IF {X 1}=={X 1} THEN\nENDIF",
-        "$TOOL={" + ",".join(f"C{k} 1" for k in range(200)) + "}",
     ],
 )
 def test_krl_that_makes_no_sense_is_followed_on(tmp_path, text):
     (tmp_path / "a.src").write_text(KRL.format(text))
     assert len([m for m in read_program(tmp_path / "a.src").motions if m.pose is not None]) == 2
+
+
+@pytest.mark.parametrize("text", ["7" * 5000, "{" + ",".join(f"C{k} 1" for k in range(200)) + "}"])
+def test_krl_s_target_behind_a_tool_that_makes_no_sense_depends_on_it(tmp_path, text):
+    (tmp_path / "a.src").write_text(KRL.format(f"$TOOL={text}"))
+    program = read_program(tmp_path / "a.src")
+    assert [m.pose is None for m in program.motions] == [False, True]
+    assert [p.line for p in program.problems] == [3, 4] and "$TOOL" in str(program.problems[0])
+    (tmp_path / "a.src").write_text(KRL.format(f"$TOOL={text}\nLIN {{X 1,Y 2,Z 3,A 4,B 5,C 6}}"))
+    assert len([m for m in read_program(tmp_path / "a.src").motions if m.pose is not None]) == 3
 
 
 @pytest.mark.parametrize("size", ["", "-1", "x", "9" * 5000, "9999999," * 999 + "9", "\u0663"])
@@ -193,7 +199,7 @@ def test_defaults_that_call_their_own_routine_end(tmp_path):
         read_program(tmp_path / "a.script")
 
 
-@pytest.mark.parametrize("suffix", [".src", ".mod", ".script", ".ls", ".nc", ".apt"])
+@pytest.mark.parametrize("suffix", [".src", ".mod", ".script", ".ls", ".nc", ".apt", ".as"])
 def test_a_line_without_end_is_refused(tmp_path, suffix):
     head = "/JOB\n" if suffix == ".jbi" else ""
     (tmp_path / f"a{suffix}").write_text(head + "x" * 1_000_001 + "\n")

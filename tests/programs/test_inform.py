@@ -2,20 +2,18 @@
 
 import math
 import os
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+from beltgrinding.base import frames
+from beltgrinding.programs.program import ProgramError
+from beltgrinding.programs.languages.inform import reader as inform
+from beltgrinding.programs.registry import read_program
+from support.cost import growth
 
-from beltgrinding.base import frames  # noqa: E402
-from beltgrinding.programs.program import ProgramError  # noqa: E402
-from beltgrinding.programs.readers.inform import reader as inform  # noqa: E402
-from beltgrinding.programs.registry import read_program  # noqa: E402
-from support.cost import growth  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 PROGRAMS = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared")) / "data" / "programs"
 needs_shared = pytest.mark.skipif(not PROGRAMS.is_dir(), reason=f"no shared data at {PROGRAMS}")
@@ -108,10 +106,10 @@ def test_angles_and_frames(tmp_path):
         ("MOVL LP001 V=10.0", "not in this file"),
         ("MOVL P009 V=10.0", "P009 has no value"),
         ("MOVL V=10.0", "not in this file"),
-        ("MOVJ C00050 VJ=5.00", "kinematics"),
+        ("MOVJ C00050 VJ=5.00", "PULSES_PER_DEGREE_S"),
         ("MOVL C00051 V=5.0", "frame TOOL"),
         ("MOVL C00002 V=5.0 UNTIL IN#(1)=ON", "UNTIL"),
-        ("SMOVL C00002 V=5.0", "not understood"),
+        ("SMOVL C00002 V=5.0 +MOVJ EC00002", "station"),
         ("IMOV P002 V=5.0 UF#(4)", "turns"),
         ("IMOV P001 V=5.0 BF", "along BF"),
         ("IMOV P001 V=5.0", "not known"),
@@ -143,7 +141,7 @@ def test_unknown_speeds_are_noted_and_the_motion_stays(tmp_path, speed):
 
 
 def test_variables_set_at_run_time_are_unknown(tmp_path):
-    for instruction in ("GETS PX001 $PX000", "SET P001 P002", "ADD P001 P002", "CALL JOB:OTHER"):
+    for instruction in ("GETS PX001 $PX000", "SET P001 P009", "ADD P001 P002", "CALL JOB:OTHER"):
         program = job(tmp_path, instruction, "MOVL P001 V=10.0")
         assert xs(program) == [None], instruction
         assert "P001 has no value" in program.problems[-1].message
@@ -168,7 +166,8 @@ def test_jumps_blocks_and_calls(tmp_path):
     assert xs(program) == [None, 20]
     program = job(tmp_path, "CALL JOB:X IF IN#(1)=ON", one, "CALL JOB:X", "RET", two)
     assert xs(program) == [None, 10, None]
-    assert [p.line for p in program.problems] == [FIRST + 1] and "X" in str(program.problems[0])
+    assert [p.line for p in program.problems] == [FIRST + 1, FIRST + 3]
+    assert "IF" in str(program.problems[0]) and "X" in str(program.problems[1])
     program = job(tmp_path, one, "+MOVJ EC00001 VJ=5.0", "FROBNICATE 3")
     assert [p.line for p in program.problems] == [FIRST + 2, FIRST + 3] and xs(program) == [10]
 

@@ -1,16 +1,14 @@
 """KRL data lists of other names: what a module sees of them."""
 
-import sys
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+from beltgrinding.programs.patch.patch import patch
+from beltgrinding.programs.languages.krl import data_lists
+from beltgrinding.programs.registry import read_program
 
-from beltgrinding.programs.patch.patch import patch  # noqa: E402
-from beltgrinding.programs.readers.krl import data_lists  # noqa: E402
-from beltgrinding.programs.registry import read_program  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 POSE = "{{X {0}, Y 0, Z 0, A 0, B 0, C 180}}"
 

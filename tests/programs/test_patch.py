@@ -4,20 +4,18 @@ import csv
 import json
 import os
 import re
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+from beltgrinding import cli
+from beltgrinding.programs.program import ProgramError
+from beltgrinding.programs.patch.patch import patch
+from beltgrinding.programs.registry import read_program
+from beltgrinding.programs.patch.text import plan
 
-from beltgrinding import cli  # noqa: E402
-from beltgrinding.programs.program import ProgramError  # noqa: E402
-from beltgrinding.programs.patch.patch import patch  # noqa: E402
-from beltgrinding.programs.registry import read_program  # noqa: E402
-from beltgrinding.programs.patch.text import plan  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 PROGRAMS = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared")) / "data" / "programs"
 needs_shared = pytest.mark.skipif(not PROGRAMS.is_dir(), reason=f"no shared data at {PROGRAMS}")
@@ -450,6 +448,17 @@ def test_fanuc(tmp_path):
     after, program = patched(tmp_path, "a.ls", FANUC, [{"line": 8, "speed_mm_s": 20}])
     assert after == FANUC.replace("2.0sec", "20mm/sec")
     assert speeds(program)[-1] == 20
+
+
+def test_fanuc_without_positions(tmp_path):
+    text = "/PROG A\n/MN\n 1:L PR[1] 100mm/sec FINE ;\n 2:L PR[2] 100mm/sec FINE ;\n/END\n"
+    where = {"x_mm": 1, "y_mm": 2, "z_mm": 3, "a_deg": 0, "b_deg": 0, "c_deg": 0}
+    values = {"variables": {"PR[1]": where, "PR[2]": {**where, "x_mm": 9}}}
+    (tmp_path / "a.values.json").write_text(json.dumps(values))
+    after, _ = patched(tmp_path, "a.ls", text, [{"index": 1, "speed_mm_s": 80}])
+    assert after == text.replace("2:L PR[2] 100mm", "2:L PR[2] 80mm")
+    move = [{"index": 1, "dx_mm": 1}]
+    refused(tmp_path, "a.ls", text, move, "its target is no position of this program")
 
 
 def test_fanuc_positions(tmp_path):

@@ -1,19 +1,17 @@
 """Robot programs: KRL, CSV, the writer; against real files where shared data is there."""
 
 import os
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+from beltgrinding.base import frames
+from beltgrinding.programs.program import ProgramError
+from beltgrinding.programs.registry import read_program
+from beltgrinding.programs.writers.writer import write_program
 
-from beltgrinding.base import frames  # noqa: E402
-from beltgrinding.programs.program import ProgramError  # noqa: E402
-from beltgrinding.programs.registry import read_program  # noqa: E402
-from beltgrinding.programs.writers.writer import write_program  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 PROGRAMS = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared")) / "data" / "programs"
 needs_shared = pytest.mark.skipif(not PROGRAMS.is_dir(), reason=f"no shared data at {PROGRAMS}")

@@ -1,15 +1,13 @@
 """RAPID functions of the program, and other modules of its folder."""
 
-import sys
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+from beltgrinding.programs.patch.patch import patch
+from beltgrinding.programs.registry import read_program
 
-from beltgrinding.programs.patch.patch import patch  # noqa: E402
-from beltgrinding.programs.registry import read_program  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 REST = "[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]]"
 

@@ -2,20 +2,18 @@
 
 import json
 import math
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+from beltgrinding import cli
+from beltgrinding.programs.patch.patch import patch
+from beltgrinding.programs.program import ProgramError
+from beltgrinding.programs.languages.roll_along import TURNING
+from beltgrinding.programs.registry import read_program
 
-from beltgrinding import cli  # noqa: E402
-from beltgrinding.programs.patch.patch import patch  # noqa: E402
-from beltgrinding.programs.program import ProgramError  # noqa: E402
-from beltgrinding.programs.readers.roll_along import TURNING  # noqa: E402
-from beltgrinding.programs.registry import read_program  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 UP = (0.0, 0.0, 1.0)
 

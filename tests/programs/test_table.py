@@ -2,14 +2,10 @@
 
 import csv
 import json
-import sys
-from pathlib import Path
 
 import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "Mod" / "BeltGrinding"))
-
-from beltgrinding import cli  # noqa: E402
+from beltgrinding import cli
 
 KRL = """DEF p()
 $BASE = {X 0,Y 0,Z 0,A 0,B 0,C 0}

@@ -2,21 +2,20 @@
 
 import gzip
 import re
-import sys
 import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+from beltgrinding.base import frames
+from beltgrinding.programs.program import Motion, ProgramError
+from beltgrinding.programs.registry import read_program
+from beltgrinding.programs.languages.core import flow
+from beltgrinding.programs.languages.urp import position as urp_position
+from beltgrinding.programs.languages import xml_tree
 
-from beltgrinding.base import frames  # noqa: E402
-from beltgrinding.programs.program import Motion, ProgramError  # noqa: E402
-from beltgrinding.programs.registry import read_program  # noqa: E402
-from beltgrinding.programs.readers.urp import reader as urp, position as urp_position  # noqa: E402
-from beltgrinding.programs.readers import xml_tree  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 # Universal Robots' published Denavit-Hartenberg parameters of the UR5e, m and rad.
 UR5E = {
@@ -354,7 +353,7 @@ def test_files_cut_off_or_hostile_are_refused(tmp_path, monkeypatch):
 
 
 def test_nothing_hangs(tmp_path, monkeypatch):
-    monkeypatch.setattr(urp, "MAX_UNROLLED", 20_000)
+    monkeypatch.setattr(flow, "MAX_UNROLLED", 20_000)
     loop = '<Loop type="Counting" count="999999"><children>{}</children></Loop>'
     with pytest.raises(ProgramError, match="too long"):
         read(tmp_path, loop.format(loop.format("<Comment/>")))
@@ -381,7 +380,7 @@ def test_a_hundred_thousand_waypoints_take_seconds(tmp_path):
 
 
 def test_mutated_programs_never_crash(tmp_path, monkeypatch):
-    monkeypatch.setattr(urp, "MAX_UNROLLED", 2000)
+    monkeypatch.setattr(flow, "MAX_UNROLLED", 2000)
     rng = np.random.default_rng(1)
     variable = '<variable name="i"/>'
     text = document(

@@ -3,24 +3,22 @@
 import dataclasses
 import os
 import re
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+from beltgrinding import cli
+from beltgrinding.base import frames
+from beltgrinding.base.messages import sentence
+from beltgrinding.programs.program import Motion, ProgramError
+from beltgrinding.programs.registry import read_program
+from beltgrinding.programs.writers.writer import write_program
+from beltgrinding.programs.writers.frames import frame_in_words
+from beltgrinding.programs.writers.text import identifier
+from support.cost import growth
 
-from beltgrinding import cli  # noqa: E402
-from beltgrinding.base import frames  # noqa: E402
-from beltgrinding.base.messages import sentence  # noqa: E402
-from beltgrinding.programs.program import Motion, ProgramError  # noqa: E402
-from beltgrinding.programs.registry import read_program  # noqa: E402
-from beltgrinding.programs.writers.writer import write_program  # noqa: E402
-from beltgrinding.programs.writers.frames import frame_in_words  # noqa: E402
-from beltgrinding.programs.writers.text import identifier  # noqa: E402
-from support.cost import growth  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 PROGRAMS = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared")) / "data" / "programs"
 needs_shared = pytest.mark.skipif(not PROGRAMS.is_dir(), reason=f"no shared data at {PROGRAMS}")
@@ -336,6 +334,25 @@ def test_over_a_gap_nothing_is_ground(tmp_path, suffix):
     assert read_program(tmp_path / f"p{suffix}").motions[1].kind == "PTP"
 
 
+@pytest.mark.parametrize("turn", ["path", "hold path"])
+@pytest.mark.parametrize("suffix", [".src", ".mod", ".script", ".csv"])
+def test_an_arc_whose_auxiliary_point_is_not_known_is_left_out(tmp_path, suffix, turn):
+    start, end = np.eye(4), np.eye(4)
+    end[0, 3] = 10.0
+    write_program(
+        tmp_path / f"p{suffix}",
+        None,
+        [
+            Motion("PTP", start, 1, "p"),
+            Motion("CIRC", None, 2, "p", aux=True, turn=turn),
+            Motion("CIRC", end, 2, "p", 10.0, turn=turn),
+        ],
+    )
+    assert "no pose is known for line 2" in (tmp_path / f"p{suffix}").read_text()
+    read = read_program(tmp_path / f"p{suffix}")
+    assert [m.kind for m in read.motions if m.pose is not None] == ["PTP", "PTP"]
+
+
 def test_splines_speeds_and_blends(tmp_path):
     at = [frames.from_abc((10.0 * k, 0, 0), (0, 0, 0)) for k in range(6)]
     kinds = ["PTP", "SPL", "SPL", "SPL", "LIN", "LIN"]
@@ -419,7 +436,7 @@ def test_convert_from_the_command_line(tmp_path, capsys):
     assert cli.main(["program", "convert", str(new), "-o", str(tmp_path / "q.src"), *numbers]) == 0
     first = read_program(tmp_path / "q.src").motions[0]
     assert first.tool == "X 0 Y 0 Z 120.5 A 0 B 90 C 0" and first.base.startswith("X -5 ")
-    assert not capsys.readouterr().err
+    assert capsys.readouterr().err == "note: read 5 of 5 motions\n"
     assert cli.main(["program", "convert", str(new), "-o", str(new) + "x", "--tool", "1,2"]) == 2
     assert "--tool 1,2:" in capsys.readouterr().err
     assert cli.main(["program", str(new), "--tool", "3"]) == 2

@@ -1,18 +1,16 @@
 """Where a program says that the robot stops and where it rounds corners, language by language."""
 
 import os
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+from beltgrinding.programs.program import ProgramError
+from beltgrinding.programs.registry import read_program
+from beltgrinding.programs.program import CHORD_ERROR, PASSING_ERROR
 
-from beltgrinding.programs.program import ProgramError  # noqa: E402
-from beltgrinding.programs.registry import read_program  # noqa: E402
-from beltgrinding.programs.program import CHORD_ERROR, PASSING_ERROR  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 INF = float("inf")
 PROGRAMS = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared")) / "data" / "programs"
@@ -44,7 +42,7 @@ START = "PTP {X 0,Y 0,Z 0,A 0,B 0,C 0}\n"
         ("$APO.CDIS=2\nPTP {X 1} C_PTP C_DIS", [0, 2.0]),
         ("$APO={CVEL 50,CDIS 4.0}\nLIN {X 1} C_DIS", [0, 4.0]),
         ("$APO.CDIS=2\nSLIN {X 1} WITH $VEL.CP=0.1 C_SPL", [0, 2.0]),
-        ("$APO.CDIS=2\nSLIN {X 1} WITH $APO.CDIS=7 C_SPL", [0, None]),
+        ("$APO.CDIS=2\nSLIN {X 1} WITH $APO.CDIS=7 C_SPL\nSLIN {X 2} C_SPL", [0, 7.0, 2.0]),
         ("$APO.CDIS=2\nSPLINE\nSPL {X 1}\nSPL {X 2}\nSLIN {X 3}\nENDSPLINE", [0, INF, INF, 0]),
         ("$APO.CDIS=2\nSPLINE\nSPL {X 1}\nSPL {X 2}\nENDSPLINE C_SPL\nLIN {X 3}", [0, INF, 2.0, 0]),
         ("$APO.CDIS=$IN[3]\nLIN {X 1} C_DIS", [0, None]),

@@ -1,20 +1,29 @@
 #!/usr/bin/env python3
 """Runs random small jobs and checks what must hold for every one of them.
 
-    tests/robustness/fuzz_jobs.py --jobs 200
-    tests/robustness/fuzz_jobs.py --replay 17
+    tests/robustness/fuzz_jobs.py --jobs 200                      on real parts (random_jobs.py)
+    tests/robustness/fuzz_jobs.py --kind valid --jobs 10000       all that the schema has (schema_jobs.py)
+    tests/robustness/fuzz_jobs.py --kind nearly --jobs 10000      the same, one or two keys at the edge or beyond
+    tests/robustness/fuzz_jobs.py --kind nearly --seed 1 --job 17     prints one
+    tests/robustness/fuzz_jobs.py --kind nearly --seed 1 --replay 17  runs it here
 
-Each job ends in a result or in an InputError: no crash, no other error, within LIMIT. In a result
-nothing is NaN, no height has grown, the volume that is gone from the field is the one that the
-summary, and the steps added up, say, and one thread gives the bits that several give.
+Each job ends in a result or in an InputError of one line: no crash, no other error, within LIMIT; or, where it has
+more steps than that, it tells how far it is, goes on, and ends when it is asked to. In a result all is finite, no
+height has grown, what is gone from the field is what the summary and the steps added up say, between 0 and the
+stock; its files read back to the same bits; and, of some, one thread gives the bits that several give, and so does
+a run that goes on from an earlier one.
 """
 
 import argparse
+import copy
 import json
 import math
 import os
+import resource
 import subprocess
 import sys
+import tempfile
+import threading
 import time
 from pathlib import Path
 
@@ -25,7 +34,20 @@ for folder in (HERE, HERE.parents[1] / "Mod" / "BeltGrinding"):
     if str(folder) not in sys.path:
         sys.path.insert(0, str(folder))
 
-LIMIT = 120.0  # s of wall time for one job; sanitizers and busy machines included
+LIMIT = 120.0  # s of processor time for one job, sanitizers included
+STARVED = 10
+PATIENCE = 10.0  # s of processor time after which a job is asked to end
+MEMORY = 6 << 30  # bytes of address space of a worker
+KINDS = ("parts", "valid", "nearly")
+UNLIKE = (
+    "run_id",
+    "wall_time_s",
+    "warnings",
+    "files",
+    "sha256",
+)  # of a summary, from run to run or when it is read
+TOLD = 250  # jobs after which it is told how they ended so far
+EVERY = 8  # so many jobs of which one is run on one thread, and one resumed
 PRELOAD = "BELTGRINDING_FUZZ_PRELOAD"  # libraries that the worker loads first: a sanitizer's
 STRICT = "BELTGRINDING_FUZZ_THREADS"  # set: every job runs again on one thread
 
@@ -34,34 +56,141 @@ class Finding(Exception):
     """What a job did wrong."""
 
 
-def check(job, again):
-    """Runs a job dict and checks its result; ``again``: on one thread as well. Returns what came of
-    it in one word or a few: an InputError's text, or "ground", "untouched". Raises Finding.
+def check(job, again, written=False, resumed=False, patience=None):
+    """Runs a job dict and checks its result. ``again``: on one thread as well; ``written``: its files are read back;
+    ``resumed``: also from the middle of another run; ``patience``: s after which it is asked to end. Returns what came
+    of it in one word or a few: an InputError's text, or "ground", "untouched", "long". Raises Finding.
     """
-    import beltgrinding
-    from beltgrinding.engine import InputError
+    from beltgrinding.engine import Cancelled, InputError
 
-    before = json.dumps(job, sort_keys=True)
+    before = repr(job)
     try:
-        result = beltgrinding.run(job)
+        result = _patient(job, patience)
     except InputError as error:
-        if not str(error).strip():
-            raise Finding("an InputError without a word")
-        return f"refused: {error}"
-    if json.dumps(job, sort_keys=True) != before:
+        text = str(error)
+        if not text.strip() or "\n" in text or "Traceback" in text:
+            raise Finding(f"an InputError that is not one line: {text!r}") from None
+        return f"refused: {text}"
+    except Cancelled:
+        return "long: asked to end, and did"
+    if repr(job) != before:
         raise Finding("the job given was changed")
     _check_result(result)
     if again:
-        beltgrinding.core.set_threads(1)
-        try:
-            other = beltgrinding.run(job)
-        finally:
-            beltgrinding.core.set_threads(0)
-        if other.field.height.tobytes() != result.field.height.tobytes():
-            raise Finding("one thread gives other heights than several")
-        if json.dumps(other.events) != json.dumps(result.events):
-            raise Finding("one thread gives other events than several")
+        _check_threads(job, result)
+    if written:
+        _check_written(result)
+    if resumed:
+        _check_resumed(job, result)
     return "ground" if result.summary["removed_volume_mm3"] > 0 else "untouched"
+
+
+def _patient(job, patience):
+    import beltgrinding
+
+    if patience is None:
+        return beltgrinding.run(job)
+    context = beltgrinding.RunContext()
+    done, late = threading.Event(), []
+
+    begun, wall = time.process_time(), time.monotonic()
+
+    def ask():
+        for spent in (patience, 2.0 * patience):  # s of processor time: others may be at work
+            while time.process_time() < begun + spent:
+                if done.wait(0.1):
+                    return
+            context.cancel()
+        late.append(True)
+
+    asking = threading.Thread(target=ask)
+    asking.start()
+    try:
+        return beltgrinding.run(job, context)
+    finally:
+        done.set()
+        asking.join()
+        if late:
+            raise Finding(
+                f"did not end within {patience:g} s of processor time when it was asked to, at "
+                f"{context.progress:.2f}, after {time.monotonic() - wall:.0f} s"
+            )
+
+
+def _check_threads(job, result):
+    import beltgrinding
+
+    beltgrinding.core.set_threads(1)
+    try:
+        other = beltgrinding.run(job)
+    finally:
+        beltgrinding.core.set_threads(0)
+    _compare(other, result, "one thread gives")
+
+
+def _compare(other, result, what):
+    for name, values in _arrays(result).items():
+        if _arrays(other)[name].tobytes() != values.tobytes():
+            raise Finding(f"{what} another {name}")
+    if _told(other.events) != _told(result.events):
+        raise Finding(f"{what} other events")
+    for key, value in result.summary.items():
+        if key not in UNLIKE and _told(other.summary.get(key)) != _told(value):
+            raise Finding(f"{what} another {key} in the summary: {other.summary.get(key)}, {value}")
+
+
+def _told(data):
+    return json.dumps(data, sort_keys=True, default=str)
+
+
+def _arrays(result):
+    field = result.field
+    names = ("points", "normals", "areas", "stock_height", "height", "height_sd", "faces", "flags")
+    found = {name: np.asarray(getattr(field, name)) for name in names}
+    for group in ("trace", "heat", "finish"):
+        for name, values in (getattr(field, group) or {}).items():
+            found[f"{group}.{name}"] = np.asarray(values)
+    return found
+
+
+def _check_written(result):
+    """What was written is read again, to the same bits."""
+    from beltgrinding.engine import InputError
+    from beltgrinding.simulation.result import Result
+
+    with tempfile.TemporaryDirectory(dir=_memory_folder()) as folder:
+        path = Path(folder, "result")
+        try:
+            result.write(path)
+            read = Result.read(path)
+        except InputError as error:
+            raise Finding(f"what was written cannot be read: {error}") from None
+        _compare(read, result, "what was written gives")
+        if _told(read.job) != _told(result.job):
+            raise Finding("what was written gives another job")
+
+
+def _memory_folder():
+    return "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
+
+
+def _check_resumed(job, result):
+    """The same after a run of a job whose last pose is another one, from which it goes on."""
+    import beltgrinding
+    from beltgrinding.base import kept
+    from beltgrinding.engine import InputError
+
+    other = copy.deepcopy(job)
+    program = other["programs"][-1]
+    if "poses" not in program:
+        return
+    program["poses"][-1]["z_mm"] += 1.0
+    with kept.instead(kept.Kept()):
+        try:
+            beltgrinding.run(other)
+        except InputError:
+            return
+        _compare(beltgrinding.run(job), result, "a run that goes on from an earlier one gives")
 
 
 def _check_result(result):
@@ -84,6 +213,8 @@ def _check_result(result):
     for name in ("force", "contact_area", "peak_pressure", "removal_rate", "duration"):
         if (steps[name] < 0).any():
             raise Finding(f"{name} of a step is negative")
+    if not 0.0 <= summary["removed_volume_mm3"]:
+        raise Finding(f"the removed volume is {summary['removed_volume_mm3']} mm3")
     gone = float((area * (stock - height))[found].sum())
     said = summary["removed_volume_mm3"]
     # float32 stock and rates: what they may round away
@@ -107,23 +238,54 @@ def _numbers(value, where=""):
         yield where, value
 
 
-def run_one(number):
+def made(kind, seed, number):
+    """Job ``number`` of a kind, a dict. Raises InputError where its part cannot be read."""
+    if kind == "parts":
+        from random_jobs import random_job
+
+        return random_job(number)
+    import schema_jobs
+
+    return schema_jobs.job(seed, number, kind == "nearly")
+
+
+def run_one(kind, seed, number):
     """One line for the job; raises Finding."""
     from beltgrinding.engine import InputError
-    from random_jobs import random_job
 
     try:
-        job = random_job(number)
+        job = made(kind, seed, number)
     except InputError as error:
         return f"no part: {error}"
-    return check(job, STRICT in os.environ or number % 4 == 0)
+    if kind == "parts":
+        return check(job, STRICT in os.environ or number % 4 == 0)
+    if kind == "nearly" and number % 2:
+        job = _through_a_file(job)
+        if isinstance(job, str):
+            return job
+    turn = number % EVERY
+    return check(job, turn == 0, kind == "valid" or turn == 2, turn == 4, PATIENCE)
 
 
-def run_all(numbers, limit=LIMIT, environment=None):
+def _through_a_file(job):
+    """The job as ``jobs.load`` reads it, or what that says."""
+    from beltgrinding.engine import InputError
+    from beltgrinding.job import load as jobs
+
+    with tempfile.TemporaryDirectory(dir=_memory_folder()) as folder:
+        path = Path(folder, "job.json")
+        path.write_text(json.dumps(job))
+        try:
+            return jobs.load(path)
+        except InputError as error:
+            return f"refused: {error}"
+
+
+def run_all(numbers, limit=LIMIT, environment=None, kind="parts", seed=1):
     """Runs the jobs, in a process that is begun anew when it dies. Yields (number, words, is it a
     finding)."""
     numbers = list(numbers)
-    command = [sys.executable, __file__, "--worker"]
+    command = [sys.executable, __file__, "--worker", "--kind", kind, "--seed", str(seed)]
     worker = None
     while numbers:
         if worker is None:
@@ -136,12 +298,10 @@ def run_all(numbers, limit=LIMIT, environment=None):
                 env=_worker_environment(environment or {}),
             )
         number = numbers.pop(0)
-        start = time.monotonic()
         worker.stdin.write(f"{number}\n")
         worker.stdin.flush()
-        line = _line(worker, start + limit)
+        line, slow = _line(worker, limit)
         if line is None:
-            slow = time.monotonic() >= start + limit  # else it has just died
             worker.kill()
             said = (worker.stderr.read() if worker.stderr else "")[-2000:]
             worker.wait()
@@ -160,34 +320,52 @@ def _worker_environment(more):
     return {**os.environ, **more, **({"LD_PRELOAD": preload} if preload else {})}
 
 
-def _line(worker, deadline):
+def _line(worker, limit):
+    """(the worker's line, None where it has died or has taken more than ``limit`` s; whether it has). Its processor
+    time counts, since others may be at work, up to STARVED times as long."""
     import select
 
-    while time.monotonic() < deadline:
-        ready, _, _ = select.select([worker.stdout], [], [], 0.2)
-        if ready:
-            return worker.stdout.readline() or None
+    begun, ends = _spent(worker.pid), time.monotonic() + STARVED * limit
+    while True:
+        if select.select([worker.stdout], [], [], 0.2)[0]:
+            return worker.stdout.readline() or None, False
         if worker.poll() is not None:
-            return None
-    return None
+            return None, False
+        if _spent(worker.pid) > begun + limit or time.monotonic() > ends:
+            return None, True
 
 
-def _work():
+def _spent(process):
+    """s of processor time of a process, 0 where it has ended."""
+    try:
+        fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+    except OSError:
+        return 0.0
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def _work(kind, seed):
     """Reads numbers from standard input, and answers each with a line of JSON."""
     import traceback
 
+    if PRELOAD not in os.environ:  # a sanitizer's shadow is larger than any limit
+        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, resource.getrlimit(resource.RLIMIT_AS)[1]))
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)  # whatever else is printed
     for line in sys.stdin:
         finding = False
         try:
-            words = run_one(int(line))
+            words = run_one(kind, seed, int(line))
         except Finding as error:
             words, finding = str(error), True
         except Exception:
             words, finding = traceback.format_exc(), True
         answers.write(json.dumps({"words": words, "finding": finding}) + "\n")
         answers.flush()
+
+
+def _counted(counts):
+    return ", ".join(f"{count} {kind}" for kind, count in sorted(counts.items()))
 
 
 def main():
@@ -197,29 +375,37 @@ def main():
     parser.add_argument(
         "--limit", type=float, default=LIMIT, help=f"s for a job (default {LIMIT:g})"
     )
+    parser.add_argument("--kind", choices=KINDS, default="parts", help="of jobs (default parts)")
+    parser.add_argument("--seed", type=int, default=1, help="of valid and nearly (default 1)")
+    parser.add_argument("--job", type=int, metavar="NUMBER", help="print a job")
     parser.add_argument("--replay", type=int, metavar="NUMBER", help="print a job, run it here")
     parser.add_argument("--verbose", action="store_true", help="a line a job")
     parser.add_argument("--worker", action="store_true", help=argparse.SUPPRESS)
     arguments = parser.parse_args()
+    kind, seed = arguments.kind, arguments.seed
     if arguments.worker:
-        return _work()
+        return _work(kind, seed)
+    if arguments.job is not None:
+        print(json.dumps(made(kind, seed, arguments.job), indent=1))
+        return 0
     if arguments.replay is not None:
-        from random_jobs import random_job
-
-        job = random_job(arguments.replay)
+        job = made(kind, seed, arguments.replay)
         shown = {**job, "design": {k: v for k, v in job["design"].items() if k != "brep"}}
         print(json.dumps(shown, indent=1))
-        print(check(job, True))
+        print(check(job, True, True, True))
         return 0
+    print(f"{kind} jobs of seed {seed}, from {arguments.first} on", flush=True)
     counts, findings = {}, 0
     numbers = range(arguments.first, arguments.first + arguments.jobs)
-    for number, words, finding in run_all(numbers, arguments.limit):
+    for number, words, finding in run_all(numbers, arguments.limit, kind=kind, seed=seed):
+        if number % TOLD == TOLD - 1:
+            print(f"up to {number}: {_counted(counts)}", flush=True)
         kind = "finding" if finding else words.split(":")[0]
         counts[kind] = counts.get(kind, 0) + 1
         findings += finding
         if finding or arguments.verbose:
             print(f"{number}: {'FINDING ' if finding else ''}{words}", flush=True)
-    print(", ".join(f"{count} {kind}" for kind, count in sorted(counts.items())))
+    print(_counted(counts))
     return 1 if findings else 0
 
 

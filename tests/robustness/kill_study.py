@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Runs a study on a local cluster whose workers are killed at random moments, and compares its table with the serial one.
+"""Runs a study on processes that are killed at random moments, and compares its table with the serial one.
 
     tests/robustness/kill_study.py --jobs 1000 --job build/demo/job.json --set sampling.spacing_mm=2
 
-Now and then the whole cluster is killed, with its scheduler. What does not come to an end so, since each worker that had it was
+Now and then all of them are killed at once. What does not come to an end so, since each worker that had it was
 killed, is made by the same study again, as a user does; then both tables are compared byte for byte. Without --job the
 job is a plate.
 """
@@ -26,8 +26,8 @@ for folder in (ROOT / "Mod" / "BeltGrinding", ROOT / "tests", ROOT / "tests" / "
 BETWEEN = (
     0.2,
     1.5,
-)  # between two kills, in times what a cluster takes here and now from its start to a first run
-WHOLE = 0.1  # of the kills are of the whole cluster
+)  # between two kills, in times what a process takes here and now from its start to a first run
+WHOLE = 0.1  # of the kills are of all workers
 MOST_KILLS = 1_000_000
 ROUNDS = 10  # of the same study, until each run has come to an end
 SWAPPED = [0.05, -0.05]  # mm, a tolerance of which no job can be run
@@ -40,7 +40,7 @@ class Outcome(NamedTuple):
     runs: int
     done: int  # runs that have figures; the others cannot be run
     killed: int  # workers
-    clusters: int  # that were killed
+    at_once: int  # times that all were killed
     not_ended: int  # runs that did not come to an end the first time
     rounds: int  # of the same study
     serial_s: float
@@ -81,12 +81,15 @@ def study(job, jobs, seed=1):
 
 
 def first_run(given):
-    """s from a cluster's start to the first runs of a study, on this machine, now."""
+    """s from a process's start to the first runs of a study, on this machine, now."""
     from beltgrinding.studies import making
 
-    begun = time.monotonic()
-    making.study({**given, "design": {**given["design"], "runs": 2}}, workers=1)
-    return time.monotonic() - begun
+    few = making.validate({**given, "design": {**given["design"], "runs": 2}})
+    prepared = making.prepare(few)  # by a process of its own, before there are workers
+    with tempfile.TemporaryDirectory() as folder:
+        begun = time.monotonic()
+        making.run(prepared, folder, workers=1)
+        return time.monotonic() - begun
 
 
 def kill_studies(
@@ -104,22 +107,29 @@ def kill_studies(
         serial_s = time.monotonic() - begun
         tell(f"serial: {serial.table.done.sum()} of {len(serial.table)} in {serial_s:.0f} s")
         pace = first_run(given)
-        tell(f"a first run comes {pace:.1f} s after a cluster's start")
+        tell(f"a first run comes {pace:.1f} s after a process's start")
         between = [pace * share for share in between]
         out, begun = Path(folder, "killed"), time.monotonic()
         killer, open_ = Killer(os.getpid(), MOST_KILLS, seed, between, whole, tell), []
-        killer.start()
+
+        def begin(_):  # the design is made
+            if killer.ident is None:
+                killer.start()
+
         try:
             while len(open_) < ROUNDS and (not open_ or open_[-1]):
                 try:
-                    found = making.study(given, out, workers=workers)
+                    found = making.study(given, out, workers=workers, told=begin)
                     open_.append(found.broken_off)
                 except InputError as error:
                     if error.code != "studies.cluster_not_started":
                         raise
+                    # The table does not tell a run that was given up from one that cannot be run.
                     left = table.Table.read(out / table.FILE)
-                    open_.append(int((left[table.STATUS] == table.OPEN).sum()))
+                    open_.append(max(1, int((left[table.STATUS] == table.OPEN).sum())))
                 tell(f"round {len(open_)}: {open_[-1]} runs did not come to an end")
+                # A machine that has slowed down since would let no single run come to its end.
+                killer.between = [1.5 * pause for pause in killer.between]
         finally:
             killer.stop()
         same = Path(folder, "serial", table.FILE).read_bytes() == (out / table.FILE).read_bytes()
@@ -128,7 +138,7 @@ def kill_studies(
             len(serial.table),
             int(serial.table.done.sum()),
             killer.killed,
-            killer.clusters,
+            killer.at_once,
             open_[0],
             len(open_),
             serial_s,
@@ -158,7 +168,7 @@ def main():
     )
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--between", type=float, nargs=2, default=BETWEEN, metavar="SHARE")
-    parser.add_argument("--whole", type=float, default=WHOLE, help="share of whole clusters (0.1)")
+    parser.add_argument("--whole", type=float, default=WHOLE, help="share of all at once (0.1)")
     parser.add_argument("--seed", type=int, default=1, help="of the study and the kills")
     parser.add_argument("--folder", help="keep both tables and all runs there, and go on from them")
     arguments = parser.parse_args()

@@ -82,7 +82,7 @@ def _machine(dice, size):
     control = "position" if model == "geometric" else dice.choice(("force", "force", "position"))
     return {
         "wheel": wheel,
-        "belt_speed_m_s": _spread(dice, 20.0),
+        "belt_speed_m_s": min(max(_spread(dice, 20.0), 0.1), 200.0),
         "control": control,
         "force_N": _spread(dice, 40.0),
         "force_travel_mm": _spread(dice, 0.1 * size),

@@ -16,16 +16,13 @@ import pytest
 
 from support.thorough import cases
 
-ROOT = Path(__file__).resolve().parents[2]
-for folder in (ROOT / "Mod" / "BeltGrinding", ROOT / "tests" / "workbench"):
-    if str(folder) not in sys.path:
-        sys.path.insert(0, str(folder))
+from beltgrinding.base import folders
+from beltgrinding.cli import background, interrupts
+from beltgrinding.engine import core
+from beltgrinding.simulation.result import Result
+from test_job import plate_job
 
-from beltgrinding.base import folders  # noqa: E402
-from beltgrinding.cli import background, interrupts  # noqa: E402
-from beltgrinding.engine import core  # noqa: E402
-from beltgrinding.simulation.result import Result  # noqa: E402
-from test_job import plate_job  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 MOMENTS = cases(100, 200)
 WORKERS = 4

@@ -6,19 +6,15 @@ The envelope is worked out here anew, from the poses, the wheel and the time ser
 import json
 import math
 import random
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from support.freecad import SHARED
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-
-import beltgrinding  # noqa: E402
-from beltgrinding.engine import core  # noqa: E402
-from random_jobs import box  # noqa: E402
+import beltgrinding
+from beltgrinding.engine import core
+from random_jobs import box
 
 TOP, TOP_FACE = 10.0, 2  # of the box: z in mm, number
 SPACING = 1.0  # mm, of the samples
@@ -149,9 +145,9 @@ def random_pass(number):
         poses,
         belt_machine__wheel=wheel,
         belt_machine__control=dice.choice(("force", "position")),
-        belt_machine__force_N=10.0 ** dice.choice((1, 2, 3.3, 9)),
+        belt_machine__force_N=10.0 ** dice.choice((1, 2, 3.3, 6)),
         belt_machine__force_travel_mm=dice.choice((0.5, 5.0)),
-        belt_machine__belt_speed_m_s=dice.choice((20.0, 1000.0)),
+        belt_machine__belt_speed_m_s=dice.choice((20.0, 200.0)),
         belt_machine__robot_stiffness_N_per_mm=dice.choice((0.0, 100.0)),
         belt_machine__compliance={
             "model": dice.choice(MODELS[:3]),
@@ -224,9 +220,9 @@ def test_the_envelope_is_told_from_one_that_is_too_deep():
     assert (height < deeper - ROUNDING).any() and height.min() < -1.9
 
 
-@pytest.mark.parametrize("force", (2000, 1e9))
+@pytest.mark.parametrize("force", (2000, 1e6))
 def test_absurd_forces_end_at_the_travel_and_are_told(force):
-    """Was: 4.18 mm at 2,000 N and 2.24 with finer steps; 297 m at 1e9 N."""
+    """Was: 4.18 mm at 2,000 N and 2.24 with finer steps; 297 m at 1e9 N, which is refused now."""
     poses = line((2, 15, TOP), (38, 15, TOP))
     found = [
         ground(job(poses, belt_machine__force_N=force, simulation__max_travel_mm=travel))
@@ -258,7 +254,7 @@ def test_a_step_too_coarse_is_cut_and_then_told():
 
 
 def test_no_force_presses_the_rim_in_beyond_its_thickness():
-    one = job(belt_machine__force_N=1e9, belt_machine__force_travel_mm=1000.0)
+    one = job(belt_machine__force_N=1e6, belt_machine__force_travel_mm=1000.0)
     one["law"] = {"coefficient_mm2_per_N": 1e-12}
     result, height, *_ = ground(one)
     told = [e for e in result.events if e["kind"] == "over_compressed"]

@@ -1,12 +1,14 @@
-"""Runs pieces of Python inside FreeCAD, with or without its window, in a home of its own."""
+"""Calls functions of tests, and runs pieces of Python, inside FreeCAD, with or without its window."""
 
 import contextlib
-import json
+import io
 import os
+import pickle
 import select
 import shutil
 import signal
 import subprocess
+import sys
 import textwrap
 import time
 import warnings
@@ -17,7 +19,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 MOD = ROOT / "Mod" / "BeltGrinding"
 SHARED = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared"))
-TIME_LIMIT = 300  # s, of which the slowest test takes a quarter beside another suite
+TIME_LIMIT = 600  # s, of which the slowest test takes a quarter on a busy machine
 SHOWN = 8000  # characters of FreeCAD's output that a failure shows
 SCREEN = "-screen 0 1400x900x24"
 
@@ -25,8 +27,9 @@ SCREEN = "-screen 0 1400x900x24"
 class FreeCad:
     """A home folder, its FreeCAD with our workbench installed by a link unless told otherwise.
 
-    One window serves all runs that do not ask for a ``fresh`` one: FreeCAD takes seconds to start.
-    Between two runs ``hands.reset`` puts it back, and a run that fails has it started anew.
+    One FreeCAD with a window, and one without, serve all calls that do not ask for a ``fresh`` one: it
+    takes seconds to start. After each ``restoring.restore`` puts it back; one that fails, or has taken
+    much memory, is followed by a new one.
     """
 
     def __init__(self, folder, link=True):
@@ -36,118 +39,130 @@ class FreeCad:
         if link:
             (mods / "BeltGrinding").symlink_to(MOD)
         self.runs = 0
-        self.server = None
+        self.output = ""
+        self.servers = {}  # with a window or not: the Server
+
+    def call(
+        self, function, *arguments, window=False, fresh=False, folder=None, variables=None, **named
+    ):
+        """What a function of a test's file returns, called inside FreeCAD; fails the test with the
+        traceback and FreeCAD's output if it raises. Arguments and value are pickled. ``folder`` is its
+        current folder, the home's by default; ``variables`` are added to the environment. What FreeCAD
+        has told meanwhile is ``output`` then.
+        """
+        try:
+            given = pickle.dumps((arguments, named))
+        except (AttributeError, TypeError, pickle.PicklingError) as error:
+            pytest.fail(f"What goes into FreeCAD is pickled: {error}", pytrace=False)
+        file = function.__code__.co_filename
+        task = {"function": (file, function.__name__), "arguments": given}
+        value, self.output = self._ask(task, window, fresh, folder, variables or {})
+        return pickle.loads(value)
 
     def run(self, body, window=False, fresh=False, **variables):
-        """Runs ``body`` (Python); fails the test with FreeCAD's output if it raises. ``variables``
-        are added to the environment.
-        """
-        program = "freecad" if window else "freecadcmd"
-        for tool in (program, "xvfb-run"):
-            if shutil.which(tool) is None:
-                pytest.skip(f"{tool} is not installed")
+        """FreeCAD's output while it runs ``body`` (Python); otherwise as ``call``."""
         self.runs += 1
         script = self.folder / f"run{self.runs}.py"
-        path = f"import sys\nsys.path.insert(0, {str(ROOT / 'tests')!r})\n"
-        script.write_text(path + textwrap.dedent(body))
-        variables = {name: str(value) for name, value in variables.items()}
-        if window and not fresh:
-            return self._shared(script, variables)
-        command = [program, str(ROOT / "tools" / "in_freecad.py")]
-        if window:
-            command = ["xvfb-run", "-a", "-s", SCREEN, *command]
-        process = subprocess.Popen(
-            command,
-            env=self.environment(BELTGRINDING_RUN=str(script), **variables),
-            cwd=self.folder,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            start_new_session=True,
-        )
-        try:
-            out, told = process.communicate(timeout=TIME_LIMIT)
-        except BaseException:  # else FreeCAD and its screen would outlive xvfb-run
-            os.killpg(process.pid, signal.SIGKILL)
-            process.communicate()
-            raise
-        output = out[-SHOWN // 2 :] + told[-SHOWN // 2 :]
-        assert process.returncode == 0, output
-        return output
+        script.write_text(textwrap.dedent(body))
+        return self._ask({"script": str(script)}, window, fresh or not window, None, variables)[1]
 
     def environment(self, **variables):
         """The environment of a FreeCAD in this home."""
         own = {"QTWEBENGINE_DISABLE_SANDBOX": "1", "HOME": str(self.folder)}
         return {**os.environ, **own, **variables}
 
-    def _shared(self, script, variables):
-        if self.server is None:
-            self.server = Server(self)
-        passed, output = self.server.run(script, variables)
-        if not passed:
-            hung = self.server.hung
-            self.close()
-            if hung:
-                # One that is ours comes again; FreeCAD's own, once in thousands of tests, does not.
-                warnings.warn(f"FreeCAD hung and was started anew: {output}", stacklevel=3)
-                self.server = Server(self)
-                passed, output = self.server.run(script, variables)
-                if not passed:
-                    self.close()
-        assert passed, output
-        return output
+    def _ask(self, task, window, fresh, folder, variables):
+        """(what it returned, FreeCAD's output meanwhile)."""
+        for tool in ("freecad", "xvfb-run") if window else ("freecadcmd",):
+            if shutil.which(tool) is None:
+                pytest.skip(f"{tool} is not installed")
+        task["variables"] = {name: str(value) for name, value in variables.items()}
+        task["folder"] = str(folder or self.folder)
+        task["path"] = [part for part in sys.path if Path(part).is_relative_to(ROOT / "tests")]
+        key = "fresh" if fresh else window
+        for last in (False, True):
+            if key not in self.servers:
+                environment = self.environment(**task["variables"])
+                self.servers[key] = Server(self.folder, window, environment)
+            server = self.servers[key]
+            try:
+                outcome, value, output = server.ask(task)
+            except BaseException:  # else FreeCAD and its screen would outlive xvfb-run
+                self.close(key)
+                raise
+            if fresh or outcome == "failed" or server.tired:
+                self.close(key)
+            if not server.hung or last:
+                break
+            # One that is ours comes again; FreeCAD's own, once in thousands of tests, does not.
+            warnings.warn(f"FreeCAD hung and was started anew: {output}", stacklevel=4)
+        if outcome == "skipped":
+            pytest.skip(value)
+        if outcome == "failed":
+            pytest.fail(f"\n{value}\n{output}", pytrace=False)
+        return value, output
 
-    def close(self):
-        """Ends the window, if there is one."""
-        if self.server is not None:
-            self.server.close()
-            self.server = None
+    def close(self, *keys):
+        """Ends its FreeCADs, or one."""
+        for key in keys or list(self.servers):
+            self.servers.pop(key).close()
 
 
 class Server:
-    """A FreeCAD with a window that runs one script after the other (tests/support/serve.py)."""
+    """A FreeCAD that does one task after the other (tests/support/serve.py)."""
 
-    def __init__(self, home):
-        self.log = home.folder / "freecad.log"
-        self.hung = False
+    def __init__(self, home, window, environment):
+        self.logs = [home / "out.log", home / "err.log"]
+        self.hung = self.tired = False
         self.answers, answer = os.pipe()
-        serve = str(ROOT / "tests" / "support" / "serve.py")
-        with self.log.open("ab") as log:
+        command = ["freecad" if window else "freecadcmd", str(ROOT / "tools" / "in_freecad.py")]
+        if window:
+            command = ["xvfb-run", "-a", "-s", SCREEN, *command]
+        environment.update(
+            BELTGRINDING_RUN=str(ROOT / "tests" / "support" / "serve.py"),
+            ANSWERS=str(answer),
+            PATIENCE=str(TIME_LIMIT - 20),
+        )
+        with self.logs[0].open("ab") as out, self.logs[1].open("ab") as told:
+            self.begins = [out.tell(), told.tell()]
             self.process = subprocess.Popen(
-                ["xvfb-run", "-a", "-s", SCREEN, "freecad", str(ROOT / "tools" / "in_freecad.py")],
-                env=home.environment(
-                    BELTGRINDING_RUN=serve, ANSWERS=str(answer), PATIENCE=str(TIME_LIMIT - 20)
-                ),
-                cwd=home.folder,
+                command,
+                env=environment,
+                cwd=home,
                 stdin=subprocess.PIPE,
-                stdout=log,
-                stderr=log,
+                stdout=out,
+                stderr=told,
                 pass_fds=(answer,),
                 start_new_session=True,
             )
         os.close(answer)
 
-    def run(self, script, variables):
-        """(whether it passed, FreeCAD's output meanwhile)."""
-        begin = self.log.stat().st_size
+    def ask(self, task):
+        """(how it ended, its value or what went wrong, FreeCAD's output since it was asked last)."""
         try:
-            line = json.dumps({"script": str(script), "variables": variables}) + "\n"
-            self.process.stdin.write(line.encode())
+            self.process.stdin.write(pickle.dumps(task))
             self.process.stdin.flush()
         except BrokenPipeError:
             pass  # it says below what it died of
         answer = self._answer()
-        output = self.log.read_bytes()[begin:].decode(errors="replace")[-SHOWN:]
-        return answer == b"passed\n", output + ("" if answer else self._end())
+        output = ""
+        for k, log in enumerate(self.logs):
+            said = log.read_bytes()[self.begins[k] :]
+            self.begins[k] += len(said)
+            text = said.decode(errors="replace").replace("\r", "\n")  # FreeCAD's progress ends so
+            output += text[-SHOWN // 2 :]
+        if answer is None:
+            return "failed", self._end(), output
+        outcome, value, self.tired = answer
+        return outcome, value, output
 
     def _end(self):
         """How FreeCAD ended, or that it has not."""
         try:
-            return f"\nFreeCAD died, exit status {self.process.wait(5)}"
+            return f"FreeCAD died, exit status {self.process.wait(5)}"
         except subprocess.TimeoutExpired:
             self.hung = True
-            return f"\nFreeCAD hangs: no answer within {TIME_LIMIT} s\n{self._stacks()}"
+            return f"FreeCAD hangs: no answer within {TIME_LIMIT} s\n{self._stacks()}"
 
     def _stacks(self):
         """Where FreeCAD's native code is, if there is a debugger to ask."""
@@ -164,23 +179,25 @@ class Server:
         return told
 
     def _answer(self):
-        """One line, b"" if FreeCAD is dead or takes too long."""
-        text, end = b"", time.monotonic() + TIME_LIMIT
-        while not text.endswith(b"\n"):
+        """What it answers; None if FreeCAD is dead or takes too long."""
+        told, end = b"", time.monotonic() + TIME_LIMIT
+        while True:
             if not select.select([self.answers], [], [], max(end - time.monotonic(), 0))[0]:
-                return b""
-            part = os.read(self.answers, 100)
+                return None
+            part = os.read(self.answers, 1 << 16)
             if not part:
-                return b""
-            text += part
-        return text
+                return None
+            told += part
+            with contextlib.suppress(EOFError, pickle.UnpicklingError):
+                return pickle.load(io.BytesIO(told))
 
     def close(self):
         """Ends FreeCAD and its screen, by force if it does not listen."""
-        self.process.stdin.close()
+        with contextlib.suppress(BrokenPipeError):
+            self.process.stdin.close()
         os.close(self.answers)
         try:
-            self.process.wait(10)
+            self.process.wait(0 if self.hung else 10)
         except subprocess.TimeoutExpired:
             os.killpg(self.process.pid, signal.SIGKILL)
             self.process.wait()

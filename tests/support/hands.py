@@ -1,8 +1,6 @@
 """Hands and eyes of a person at FreeCAD's window; imported inside FreeCAD."""
 
-import gc
 import re
-import sys
 import time
 from pathlib import Path
 
@@ -11,12 +9,21 @@ import FreeCADGui as Gui
 import Part
 from PySide import QtCore, QtGui
 
+import beltgrinding
 from support import pictures
+from support.restoring import patch
 
-window = Gui.getMainWindow()
-window.setAnimated(False)  # a dock that slides in is not where a click goes
-_patched = []  # (holder, name, what it was)
+SMALL = (
+    1000,
+    700,
+)  # pixels; one more is one more that software draws in each frame, the view and all else
+window = Gui.getMainWindow() if FreeCAD.GuiUp else None
+if window is not None:
+    window.setAnimated(False)  # a dock that slides in is not where a click goes
+    _large = window.geometry()  # as FreeCAD opens it
+    window.resize(*SMALL)
 _taken = []  # names of pictures
+BUSY = 3
 TIME_TAKEN = re.compile(r"(computed in )[\d.,]+ s")
 
 
@@ -28,8 +35,8 @@ def settle():
 
 
 def wait(condition, seconds=60):
-    """Waits until ``condition()``."""
-    end = time.monotonic() + seconds
+    """Waits until ``condition()``; on a busy machine ``BUSY`` times the seconds that it takes on a quiet one."""
+    end = time.monotonic() + BUSY * seconds
     while not condition():
         assert time.monotonic() < end, "waited in vain"
         QtGui.QApplication.processEvents()
@@ -56,7 +63,13 @@ def menu(text):
     bar = {a.text().replace("&", ""): a for a in window.menuBar().actions()}
     assert "Belt grinding" in bar, list(bar)
     action = next(a for a in entries(bar["Belt grinding"]) if a.text().replace("&", "") == text)
-    wait(action.isEnabled, 20)  # FreeCAD looks a few times a second
+
+    def enabled():
+        # FreeCAD looks again whether it is when something has happened, as the mouse that goes there.
+        QtCore.QMetaObject.invokeMethod(window, "_updateActions")
+        return action.isEnabled()
+
+    wait(enabled, 20)
     assert not action.icon().isNull() and action.toolTip()
     action.trigger()
     settle()
@@ -82,6 +95,10 @@ def widgets(kind, name=None):
     return [widget for widget in found if name is None or widget.objectName() == name]
 
 
+if window is not None:  # the docks with which FreeCAD opens
+    _docks = {dock.objectName() for dock in widgets(QtGui.QDockWidget) if dock.isVisible()}
+
+
 def visible(kind, name=None):
     """The visible ones of ``widgets``, as one reads them."""
 
@@ -92,7 +109,7 @@ def visible(kind, name=None):
     return sorted((widget for widget in widgets(kind, name) if widget.isVisible()), key=place)
 
 
-def eventually(find, seconds=5):
+def eventually(find, seconds=20):
     """What ``find`` finds, as soon as it is something: FreeCAD 1.1 slides its docks in."""
     end = time.monotonic() + seconds
     while not (found := find()) and time.monotonic() < end:
@@ -157,6 +174,7 @@ def bring_up(widget):
 
 def strike(widget, key):
     """Strikes a key ("1", "V", " ") over a widget."""
+    window.activateWindow()  # without a window manager nobody else does after a dialog
     widget.setFocus()
     settle()
     for kind in (QtCore.QEvent.KeyPress, QtCore.QEvent.KeyRelease):
@@ -179,12 +197,6 @@ def click_at(x, y):
     settle()
 
 
-def patch(holder, name, value):
-    """Replaces an attribute until the test's end."""
-    _patched.append((holder, name, vars(holder).get(name, getattr(holder, name))))
-    setattr(holder, name, value)
-
-
 def choose(path):
     """Makes the next file dialog answer with ``path``."""
     patch(QtGui.QFileDialog, "getOpenFileName", staticmethod(lambda *a, **k: (str(path), "")))
@@ -195,28 +207,33 @@ def name_file(path, kind=""):
     patch(QtGui.QFileDialog, "getSaveFileName", staticmethod(lambda *a, **k: (str(path), kind)))
 
 
-def reset():
-    """Puts the window back for the next test: no document, panel, dock, message or preference."""
+def bury():
+    """Deletes what is to be deleted later, as boxes and views: FreeCAD's event loop does it, under which the
+    tests do not run.
+    """
+    QtCore.QCoreApplication.sendPostedEvents(None, int(QtCore.QEvent.DeferredDelete))
+
+
+def put_away():
+    """Closes panels, docks and messages; chooses nothing."""
     Gui.Control.closeDialog()
     settle()
     for dock in widgets(QtGui.QDockWidget):
-        if dock.objectName().startswith("BeltGrinding_"):
+        if dock.objectName() not in _docks:  # an error opens FreeCAD's report view
             dock.close()
     for box in widgets(QtGui.QMessageBox):
         box.close()
         box.deleteLater()
+    for other in widgets(QtGui.QWidget):  # the manual, the report
+        if other.isWindow() and other.isVisible() and other is not window:
+            other.close()
+    for tabs in widgets(QtGui.QTabWidget, "combiTab"):
+        tabs.setCurrentIndex(0)  # the model: what a deleted panel leaves there may not be it
     Gui.Selection.clearSelection()
-    for name in list(FreeCAD.listDocuments()):
-        FreeCAD.closeDocument(name)
-    gc.collect()
-    while _patched:
-        setattr(*_patched.pop())
-    preferences = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Mod/BeltGrinding")
-    preferences.Clear()
-    if "beltgrinding.objects.preferences" in sys.modules:
-        sys.modules["beltgrinding.objects.preferences"].apply_threads()
     window.statusBar().clearMessage()
-    settle()
+    _taken.clear()
+    window.showNormal()
+    window.resize(*SMALL)
 
 
 def screenshot(path):
@@ -228,11 +245,12 @@ def screenshot(path):
 
 def picture(name):
     """A picture of the manual: the whole screen, to build/pictures. One that is not as the manual's is
-    taken once more, later: what FreeCAD still had to do may have begun after the screen was at rest.
+    taken once more, twice at most, later: what FreeCAD still had to do may have begun after the screen was at rest.
     """
+    assert window.size() == _large.size(), "whole_screen() first"
     pictures.MADE.mkdir(parents=True, exist_ok=True)
     replaced = _as_everywhere()
-    for quiet in (0.7, 3):
+    for quiet in (0.7, 3, 6):
         _come_to_rest(quiet)
         screenshot(pictures.MADE / f"{name}.png")
         if not pictures.stale([name]):
@@ -242,7 +260,7 @@ def picture(name):
     _taken.append(name)
 
 
-def _come_to_rest(quiet, patience=3, most=10):
+def _come_to_rest(quiet, patience=3, most=30):
     """Waits until the screen has shown the same for ``quiet`` seconds: FreeCAD greys out its buttons and
     brings its tree and status bar up to date by timers of its own, late on a busy machine. Its bar of
     loading may come when the loading is over, and then stay: after ``patience`` seconds it is put away.
@@ -251,7 +269,7 @@ def _come_to_rest(quiet, patience=3, most=10):
     seen, since = None, begun
     while time.monotonic() - begun < most:
         settle()
-        time.sleep(0.05)
+        time.sleep(0.1)
         status = window.statusBar()
         left_over = [bar for bar in visible(QtGui.QProgressBar) if status.isAncestorOf(bar)]
         if left_over and time.monotonic() - begun > patience:
@@ -303,12 +321,35 @@ def start():
     header = "x_mm,y_mm,z_mm,qw,qx,qy,qz,feed_mm_s"
     Path("pass.csv").write_text("\n".join([header, *rows]) + "\n")
     Gui.activateWorkbench("BeltGrindingWorkbench")
-    window.showMaximized()
+    settle()
+
+
+def whole_screen():
+    """Makes the window as large as FreeCAD opens it and pictures show it, until the test's end."""
+    window.setGeometry(_large)
+    window.showMaximized()  # without a window manager that takes the grip of its corner alone
     settle()
 
 
 def prepare():
-    """From a block to a job that can be simulated, through menus and panels; returns the job."""
+    """A job that can be simulated: a block with stock, belt machine and one pass; returns the job. Made
+    as a macro does it, which takes a tenth of the time, and the same as ``prepare_by_hand`` leaves it.
+    """
+    part = _block()
+    job = beltgrinding.make_job(part, ["Face6"], Spacing="0.6 mm")
+    beltgrinding.make_stock(job, Allowance="0.2 mm")
+    wheel = {"WheelRadius": "60 mm", "RimThickness": "7.5 mm", "WheelWidth": "15 mm"}
+    beltgrinding.make_belt_machine(job, **wheel, Force="30 N")
+    beltgrinding.import_program(job, "pass.csv")
+    job.Document.recompute()
+    settle()
+    job.Document.commitTransaction()  # FreeCAD may have begun one, and counts it as a step
+    job.Document.clearUndos()
+    return job
+
+
+def _block():
+    """A block in a new document, its upper face selected."""
     start()
     doc = FreeCAD.newDocument("work")
     doc.UndoMode = 1
@@ -317,6 +358,13 @@ def prepare():
     doc.recompute()
     Gui.Selection.clearSelection()
     Gui.Selection.addSelection(doc.Name, "Block", "Face6")
+    return part
+
+
+def prepare_by_hand():
+    """From a block to a job that can be simulated, through menus and panels; returns the job."""
+    part = _block()
+    doc = part.Document
     menu("New job")
     type_in("Spacing", "0.6 mm")
     press("OK")

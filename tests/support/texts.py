@@ -4,10 +4,10 @@ import ast
 import json
 import re
 import string
-import xml.etree.ElementTree as tree
 from pathlib import Path
 
 MARKED = ("translate", "QT_TRANSLATE_NOOP")
+COMMAND = "Command"  # a row of gui/commands: its name, what the menu says, what the tip says
 PROPERTY = "App::Property"  # the context in which FreeCAD looks for what is said of a property
 TABLES = (
     "SETTINGS",
@@ -24,12 +24,18 @@ SCHEMAS = Path(__file__).resolve().parents[2] / "Resources" / "schema"
 
 def marked(folder):
     """{(context, text): "file:line"} of all marked texts and of what is said of properties; raises
-    ValueError for a marked one that is no literal, which lupdate would not see.
+    ValueError for a marked one that is no literal, which nobody can list.
     """
     found = described(folder)
     for path in sorted(folder.rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if not isinstance(node, ast.Call) or _name(node.func) not in MARKED:
+            if not isinstance(node, ast.Call):
+                continue
+            if _name(node.func) == COMMAND and path.parent.name == "commands":
+                for text in node.args[1:3]:
+                    where = f"{path.relative_to(folder)}:{text.lineno}"
+                    found[f"BeltGrinding_{node.args[0].value}", text.value] = where
+            if _name(node.func) not in MARKED:
                 continue
             if len(node.args) == 1:  # str.translate
                 continue
@@ -86,15 +92,11 @@ def _name(node):
 
 
 def translations(path):
-    """{(context, text): translation, '' for none} of a .ts file."""
-    found = {}
-    for context in tree.parse(path).getroot().iter("context"):
-        for message in context.iter("message"):
-            answer = message.find("translation")
-            done = answer is not None and answer.get("type") is None
-            text = (answer.text or "") if done else ""
-            found[context.findtext("name"), message.findtext("source")] = text
-    return found
+    """{(context, text): translation} of what a language's messages hold for the window."""
+    held = json.loads(path.read_text(encoding="utf-8"))["window"]
+    return {
+        (context, text): told for context, texts in held.items() for text, told in texts.items()
+    }
 
 
 def placeholders(text):
@@ -107,7 +109,7 @@ def _fields(text):
 
 
 def mistakes(folder, path):
-    """What is wrong with the .ts file ``path`` for the sources in ``folder``: a list of lines."""
+    """What is wrong with the messages' file ``path`` for the sources in ``folder``: a list of lines."""
     sources, answers = marked(folder), translations(path)
     wrong = [
         f"{sources[key]}: no translation of {key[1]!r}" for key in sources if not answers.get(key)

@@ -16,7 +16,7 @@ def walk():
     """Walks the tutorial and takes its pictures. Returns its figures, as the page writes them."""
     figures = {}
     Gui.activateWorkbench("BeltGrindingWorkbench")
-    hands.window.showMaximized()
+    hands.whole_screen()
     hands.menu("Example: compressor blade")
     doc = FreeCAD.ActiveDocument
     view = Gui.ActiveDocument.ActiveView

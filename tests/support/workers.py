@@ -1,4 +1,4 @@
-"""Processes of studies: who works for whom, workers that are killed at random, a Dask cluster started as by hand."""
+"""Processes of studies: who works for whom, workers that are killed at random, a Dask cluster started as by hand, by TLS."""
 
 import os
 import random
@@ -37,35 +37,21 @@ def alive(pid):
 
 
 def worker_processes(pid):
-    """Those of the descendants that compute: children of Dask's spawning."""
+    """Those of the descendants that do a study's work."""
     found = []
     for child in descendants(pid):
         try:
             words = Path("/proc", str(child), "cmdline").read_bytes().split(b"\0")
         except OSError:
             continue
-        if any(b"multiprocessing.spawn" in word for word in words):
-            found.append(child)
-    return found
-
-
-def local_clusters(pid):
-    """Those of the descendants that hold a LocalCluster: its scheduler, leader of its group with all its workers."""
-    found = []
-    for child in descendants(pid):
-        try:
-            words = Path("/proc", str(child), "cmdline").read_bytes().split(b"\0")
-        except OSError:
-            continue
-        if b"beltgrinding.studies.local_cluster" in words:
+        if any(b"beltgrinding.studies.worker" in word for word in words):
             found.append(child)
     return found
 
 
 class Killer(threading.Thread):
     """Kills a worker of process ``pid`` at random, ``kills`` times, ``between`` so many seconds; with the probability
-    ``whole`` its whole local cluster, scheduler and all. ``killed`` and ``clusters``: how many it has; ``tell(text)`` is
-    called after each.
+    ``whole`` all of them at once. ``killed``: how many it has, ``at_once``: how often all; ``tell(text)`` is called after each.
     """
 
     def __init__(self, pid, kills, seed=1, between=(0.3, 1.2), whole=0.0, tell=lambda text: None):
@@ -73,21 +59,21 @@ class Killer(threading.Thread):
         self.tell = tell
         self.pid, self.left, self.dice = pid, kills, random.Random(seed)
         self.between, self.whole = between, whole
-        self.over, self.killed, self.clusters = threading.Event(), 0, 0
+        self.over, self.killed, self.at_once = threading.Event(), 0, 0
 
     def run(self):
         while self.left and not self.over.wait(self.dice.uniform(*self.between)):
-            if self.dice.random() < self.whole:
-                for leader in local_clusters(self.pid):
-                    os.killpg(leader, signal.SIGKILL)
-                    self.clusters, self.left = self.clusters + 1, self.left - 1
-                    self.tell(f"{self.killed} workers and {self.clusters} clusters killed")
-                continue
             found = [pid for pid in worker_processes(self.pid) if alive(pid)]
-            if found:
-                os.kill(self.dice.choice(found), signal.SIGKILL)
-                self.left, self.killed = self.left - 1, self.killed + 1
-                self.tell(f"{self.killed} workers and {self.clusters} clusters killed")
+            if not found:
+                continue
+            if self.dice.random() < self.whole:
+                self.at_once += 1
+            else:
+                found = [self.dice.choice(found)]
+            for pid in found:
+                os.kill(pid, signal.SIGKILL)
+            self.left, self.killed = self.left - 1, self.killed + len(found)
+            self.tell(f"{self.killed} workers killed, {self.at_once} times all at once")
 
     def stop(self):
         """Returns when it kills no more."""
@@ -102,6 +88,16 @@ def free_port():
         return one_.getsockname()[1]
 
 
+TLS = ("--tls-ca-file", "--tls-cert", "--tls-key")
+
+
+def make_key(path):
+    """A file with a key and its certificate, as docs/study.md has it made."""
+    words = "req -x509 -newkey rsa:2048 -nodes -days 2 -subj /CN=study".split()
+    command = ["openssl", *words, "-keyout", str(path), "-out", str(path)]
+    subprocess.run(command, check=True, capture_output=True, umask=0o077)
+
+
 class ByHand:
     """dask-scheduler and dask-worker as a person starts them, in another folder."""
 
@@ -109,10 +105,13 @@ class ByHand:
         self.folder = folder
         folder.mkdir(exist_ok=True)
         self.port = port or free_port()
-        self.address = f"tcp://127.0.0.1:{self.port}"
-        self.processes = []
-        place = ["--host", "127.0.0.1", "--port", str(self.port), "--no-dashboard"]
-        self.start("distributed.cli.dask_scheduler", *place)
+        self.address = f"tls://127.0.0.1:{self.port}"
+        self.processes, self.key = [], folder / "key.pem"
+        if not self.key.exists():
+            make_key(self.key)
+        self.tls = [word for name in TLS for word in (name, str(self.key))]
+        place = ["--host", self.address, "--no-dashboard"]
+        self.start("distributed.cli.dask_scheduler", *place, *self.tls)
 
     def start(self, module, *arguments, before=()):
         environment = {
@@ -132,7 +131,7 @@ class ByHand:
         return process
 
     def worker(self, *arguments, before=()):
-        options = ["--no-dashboard", "--local-directory", str(self.folder), *arguments]
+        options = ["--no-dashboard", "--local-directory", str(self.folder), *self.tls, *arguments]
         return self.start("distributed.cli.dask_worker", self.address, *options, before=before)
 
     def stop(self):

@@ -41,8 +41,7 @@ def test_calculix_agrees(workpiece):
 
 @needs_ccx
 def test_a_pose_of_a_job_from_the_command_line(tmp_path, freecad):
-    make = "from beltgrinding.examples import blade\nblade.make('blade')\n"
-    freecad.run(make)
+    freecad.call(make_blade)
     arguments = ["contact", str(freecad.folder / "blade" / "job.json"), "--pose", "100"]
     done = subprocess.run(
         [sys.executable, "-m", "beltgrinding", *arguments, "--reference", "ccx", "-o", "p.csv"],
@@ -66,7 +65,7 @@ def test_without_calculix_the_package_is_named(monkeypatch):
 
 
 def test_a_pose_that_is_not_there_is_named(tmp_path, freecad):
-    freecad.run("from beltgrinding.examples import blade\nblade.make('blade')\n")
+    freecad.call(make_blade)
     for arguments, culprit in (
         (["--pose", "1"], "pose 1"),
         (["--pose", "9999"], "no pose 9999"),
@@ -80,3 +79,9 @@ def test_a_pose_that_is_not_there_is_named(tmp_path, freecad):
             text=True,
         )
         assert done.returncode == 2 and culprit in done.stderr, done.stderr
+
+
+def make_blade():
+    from beltgrinding.examples import blade
+
+    blade.make("blade")

@@ -1,20 +1,15 @@
 """The deviation of the closed ground mesh, told by other programs from the CAD."""
 
-import json
 import shutil
-import sys
 
+import deviation_bench
 import numpy as np
 import pytest
-from support.freecad import ROOT
+from test_ground_mesh import block_job
 
-sys.path.insert(0, str(ROOT / "tests" / "workbench"))
-sys.path.insert(0, str(ROOT / "tests" / "benchmark"))
+import beltgrinding
+from beltgrinding.inspection import closed_mesh
 
-import beltgrinding  # noqa: E402
-import deviation_bench  # noqa: E402
-from beltgrinding.inspection import closed_mesh  # noqa: E402
-from test_ground_mesh import block_job  # noqa: E402
 
 AGREEMENT = 0.002  # mm, root mean square, on smooth areas
 
@@ -45,19 +40,13 @@ def test_cloudcompare_finds_the_same_deviation(result, tmp_path):
 
 def test_inspection_finds_the_same_deviation(result, tmp_path, freecad):
     result.write(tmp_path / "out")
-    told = tmp_path / "told.json"
-    freecad.run(
-        f"""
-import json, os, sys
-sys.path.insert(0, {str(ROOT / "tests" / "benchmark")!r})
-import deviation_bench
-deviation_bench.CLOUDCOMPARE = None
-deviation_bench.INSPECTED = 100
-figures = deviation_bench.compare({str(tmp_path / "out")!r})
-open({str(told)!r}, "w").write(json.dumps(figures))
-"""
-    )
-    figures = json.loads(told.read_text())
+    figures = freecad.call(inspected, tmp_path / "out")
     assert figures["inspection"]["points"] == 100 and figures["inspection"]["lost"] == 0
     assert figures["inspection"]["rms_mm"] < AGREEMENT
     assert figures["ours"]["rms_mm"] < AGREEMENT
+
+
+def inspected(folder):
+    deviation_bench.CLOUDCOMPARE = None
+    deviation_bench.INSPECTED = 100
+    return deviation_bench.compare(str(folder))

@@ -5,6 +5,8 @@ import math
 
 import numpy as np
 import pytest
+import Part
+from FreeCAD import Vector
 
 from beltgrinding.inspection import edge_profile, section
 from beltgrinding.job import load
@@ -103,22 +105,7 @@ def edge_of(points, heights):
 def wedges(freecad, tmp_path_factory):
     """{radius: the file of a wedge, its edge along y}."""
     folder = tmp_path_factory.mktemp("wedges")
-    freecad.run(
-        f"""
-import math, Part
-from FreeCAD import Vector
-for radius in (0.2, 1.0):
-    turn = {TURN!r}
-    at = lambda side: Vector(side * radius * math.sin(turn), 0, radius * (math.cos(turn) - 1))
-    way = lambda side: Vector(side * math.cos(turn), 0, -math.sin(turn)) * {FLANK!r}
-    left, right = at(-1) + way(-1), at(1) + way(1)
-    wire = Part.Wire([Part.makeLine(left, at(-1)), Part.Arc(at(-1), Vector(), at(1)).toShape(),
-                      Part.makeLine(at(1), right), Part.makeLine(right, left)])
-    solid = Part.Face(wire).extrude(Vector(0, {LENGTH!r}, 0))
-    solid.translate(Vector(0, -{LENGTH!r} / 2, 0))
-    solid.exportBrep({str(folder)!r} + f"/{{radius}}.brep")
-"""
-    )
+    freecad.call(make_wedges, folder)
     return {radius: folder / f"{radius}.brep" for radius in (0.2, 1.0)}
 
 
@@ -220,3 +207,22 @@ def test_samples_of_several_densities_lose_what_the_law_takes(wedges):
     law = REMOVAL * float(result.steps["force"].mean())
     assert result.summary["removed_volume_mm3"] == pytest.approx(law, rel=0.01)
     assert abs(result.summary["lost_volume_mm3"]) < 1e-3 * law
+
+
+def make_wedges(folder):
+    for radius in (0.2, 1.0):
+        turn = TURN
+        at = lambda side: Vector(side * radius * math.sin(turn), 0, radius * (math.cos(turn) - 1))
+        way = lambda side: Vector(side * math.cos(turn), 0, -math.sin(turn)) * FLANK
+        left, right = at(-1) + way(-1), at(1) + way(1)
+        wire = Part.Wire(
+            [
+                Part.makeLine(left, at(-1)),
+                Part.Arc(at(-1), Vector(), at(1)).toShape(),
+                Part.makeLine(at(1), right),
+                Part.makeLine(right, left),
+            ]
+        )
+        solid = Part.Face(wire).extrude(Vector(0, LENGTH, 0))
+        solid.translate(Vector(0, -LENGTH / 2, 0))
+        solid.exportBrep(str(folder) + f"/{radius}.brep")

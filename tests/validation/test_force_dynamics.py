@@ -1,22 +1,20 @@
 """Force control that takes time, and rubber at speed, by whole jobs: against closed forms, and as the time step goes."""
 
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-ROBUSTNESS = Path(__file__).resolve().parent.parent / "robustness"
-sys.path.insert(0, str(ROBUSTNESS))
+import beltgrinding
+from beltgrinding import planning, presets
+from beltgrinding.engine import InputError, core
+from beltgrinding.job import load as jobs
+from beltgrinding.job.engine_input import wheel_growth
+from beltgrinding.reporting import facts
+from beltgrinding.reporting.language import Language
+from random_jobs import box
 
-import beltgrinding  # noqa: E402
-from beltgrinding import planning, presets  # noqa: E402
-from beltgrinding.engine import InputError, core  # noqa: E402
-from beltgrinding.job import load as jobs  # noqa: E402
-from beltgrinding.job.engine_input import wheel_growth  # noqa: E402
-from beltgrinding.reporting import facts  # noqa: E402
-from beltgrinding.reporting.language import Language  # noqa: E402
-from random_jobs import box  # noqa: E402
+ROBUSTNESS = Path(__file__).resolve().parent.parent / "robustness"
 
 TOP, MIDDLE = 10.0, 15.0  # of the box of 40 x 30 x 10 mm: its upper face, mm
 ALLOWANCE = 0.3  # mm

@@ -5,7 +5,9 @@ import math
 
 import numpy as np
 import pytest
+import Part
 from test_edges_plane_strain import COEFFICIENT, RADIUS, REMOVAL, WIDTH, held, influence, pressed
+from FreeCAD import Vector
 
 from beltgrinding.inspection import edge_profile, section
 
@@ -35,22 +37,7 @@ def reference(turn, stock, depth, step=0.01, times=80, half=1.5):
 def parts(freecad, tmp_path_factory):
     """{degrees: the file of a wedge with its sharp edge along y}, and that of a "box" with its top's edge there."""
     folder = tmp_path_factory.mktemp("sharp")
-    freecad.run(
-        f"""
-import math, Part
-from FreeCAD import Vector
-folder = {str(folder)!r}
-for degrees in (45, 60):
-    turn = math.radians(degrees)
-    left, right = (Vector(side * math.cos(turn), 0, -math.sin(turn)) * 2 for side in (-1, 1))
-    wire = [Part.makeLine(left, Vector()), Part.makeLine(Vector(), right), Part.makeLine(right, left)]
-    solid = Part.Face(Part.Wire(wire)).extrude(Vector(0, 18, 0))
-    solid.translate(Vector(0, -9, 0))
-    solid.exportBrep(folder + f"/{{degrees}}.brep")
-box = Part.makeBox(20, 18, 6, Vector(-20, -9, -6))
-box.exportBrep(folder + "/box.brep")
-"""
-    )
+    freecad.call(make_parts, folder)
     return {name: folder / f"{name}.brep" for name in (45, 60, "box")}
 
 
@@ -102,3 +89,20 @@ def test_a_face_is_ground_beside_a_sharp_edge_as_it_is_alone(parts, middle):
     inner = alone.field.points[:, 0] < -0.1
     assert np.abs(both.field.height[top] - alone.field.height)[inner].max() < 0.006
     assert -alone.field.height.min() > 0.1
+
+
+def make_parts(folder):
+    folder = str(folder)
+    for degrees in (45, 60):
+        turn = math.radians(degrees)
+        left, right = (Vector(side * math.cos(turn), 0, -math.sin(turn)) * 2 for side in (-1, 1))
+        wire = [
+            Part.makeLine(left, Vector()),
+            Part.makeLine(Vector(), right),
+            Part.makeLine(right, left),
+        ]
+        solid = Part.Face(Part.Wire(wire)).extrude(Vector(0, 18, 0))
+        solid.translate(Vector(0, -9, 0))
+        solid.exportBrep(folder + f"/{degrees}.brep")
+    box = Part.makeBox(20, 18, 6, Vector(-20, -9, -6))
+    box.exportBrep(folder + "/box.brep")

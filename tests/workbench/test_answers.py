@@ -3,23 +3,16 @@
 import ast
 import json
 import shutil
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
-
-ot = pytest.importorskip("openturns")
-
-from beltgrinding import cli  # noqa: E402
-from beltgrinding.base import messages  # noqa: E402
-from beltgrinding.engine import InputError  # noqa: E402
-from beltgrinding.planning import pictures  # noqa: E402
-from beltgrinding.reporting import language  # noqa: E402
-from beltgrinding.studies import (  # noqa: E402
+from beltgrinding import cli
+from beltgrinding.base import messages
+from beltgrinding.engine import InputError
+from beltgrinding.planning import pictures
+from beltgrinding.studies import (
     answers,
     best,
     chaos,
@@ -34,8 +27,11 @@ from beltgrinding.studies import (  # noqa: E402
     sorting_report,
     vary,
 )
-from beltgrinding.studies.table import Table  # noqa: E402
-from test_job import plate_job  # noqa: E402
+from beltgrinding.studies.table import Table
+from test_job import plate_job
+
+ROOT = Path(__file__).resolve().parents[2]
+ot = pytest.importorskip("openturns")
 
 # Ishigami and Homma 1990, with a = 7, b = 0.1: f = sin x1 + a sin² x2 + b x3⁴ sin x1, x uniform in [-π, π].
 A, B = 7.0, 0.1
@@ -106,6 +102,7 @@ def test_what_is_not_known_has_not_passed():
     assert share.of(["pass"], False)["low"] is None
 
 
+@pytest.mark.slow
 def test_indices_of_blocks_are_those_of_ishigamis_function():
     study = study_of("abc", "sobol_indices", 4096)
     table, meta = table_of(study, ishigami)
@@ -127,6 +124,7 @@ def test_what_two_variables_do_together():
     assert abs(found["second"][0][1]) < 0.06 and abs(found["second"][1][2]) < 0.06
 
 
+@pytest.mark.slow
 def test_indices_of_a_sample_are_those_of_ishigamis_function():
     for method in ("latin_hypercube", "monte_carlo", "sobol"):
         study = study_of("abc", method, 256)
@@ -137,6 +135,7 @@ def test_indices_of_a_sample_are_those_of_ishigamis_function():
         assert np.abs(np.array(found["total"])[:, 0] - TOTAL).max() < WITHIN
 
 
+@pytest.mark.slow
 def test_a_poor_expansion_gives_no_index():
     study = study_of("abc", "monte_carlo", 120)
     noise = np.random.default_rng(1).normal(size=120)
@@ -337,6 +336,7 @@ def two_figures(ground_study, tmp_path_factory):
     return folder
 
 
+@pytest.mark.slow
 def test_a_ground_study_has_its_report(ground_study):
     found = report.write_answers(ground_study)
     assert json.loads((ground_study / report.ANSWERS).read_text()) == found
@@ -354,6 +354,7 @@ def test_a_ground_study_has_its_report(ground_study):
     assert "Tolerance yield" in html and html.count("data:image/png") == len(pictures)
 
 
+@pytest.mark.slow
 def test_the_report_speaks_german(two_figures):
     report.write_answers(two_figures, "de")
     html = (two_figures / report.REPORT).read_text()
@@ -362,6 +363,7 @@ def test_the_report_speaks_german(two_figures):
         assert english not in html
 
 
+@pytest.mark.slow
 def test_the_command_writes_answers_beside_the_table(ground_study, capsys):
     (ground_study / report.REPORT).unlink(missing_ok=True)
     given = str(ground_study / "study.json")
@@ -375,7 +377,7 @@ def test_the_command_writes_answers_beside_the_table(ground_study, capsys):
 
 
 def test_every_text_is_there_in_german():
-    german, texts = language._texts("de"), set()
+    german, texts = messages.of_report("de"), set()
     for file in Path(report.__file__).parent.glob("*.py"):
         for node in ast.walk(ast.parse(file.read_text())):
             called = isinstance(node, ast.Call) and getattr(node.func, "id", None) == "words"

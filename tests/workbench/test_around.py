@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 import pytest
+import FreeCAD
+import Part
 
 from beltgrinding.engine import InputError, core
 from beltgrinding.job import load, workpiece
@@ -18,26 +20,7 @@ def parts(freecad, tmp_path_factory):
     """BREP files: a cylinder whose side is two half faces, askew in space; a cone; a cup; a quarter of a torus (a
     bent tube); a half cylinder; a cap of a sphere about (1, 2, 2)."""
     folder = tmp_path_factory.mktemp("round")
-    freecad.run(
-        f"""
-import FreeCAD, Part
-from pathlib import Path
-folder = Path({str(folder)!r})
-V = FreeCAD.Vector
-half = lambda: Part.makeCylinder({RADIUS}, {HEIGHT}, V(0, 0, 0), V(0, 0, 1), 180)
-other = half()
-other.rotate(V(0, 0, 0), V(0, 0, 1), 180)
-both = half().fuse(other)
-place = FreeCAD.Placement(V(40, -10, 25), FreeCAD.Rotation(V(1, 2, 3), 50))
-both.Placement = place
-both.exportBrep(str(folder / "halves.brep"))
-half().exportBrep(str(folder / "half.brep"))
-Part.makeCylinder({RADIUS}, {HEIGHT}, V(0, 0, 0), V(0, 0, 1), 90).exportBrep(str(folder / "quarter.brep"))
-Part.makeCone(30, 15, 40).exportBrep(str(folder / "cone.brep"))
-Part.makeTorus(60, 15, V(0, 0, 0), V(0, 0, 1), -180, 180, 90).exportBrep(str(folder / "bend.brep"))
-Part.makeSphere(50, V(0, 0, 0), V(1, 2, 2), 50, 90, 360).exportBrep(str(folder / "cap.brep"))
-"""
-    )
+    freecad.call(make_parts, folder)
     return folder
 
 
@@ -170,3 +153,23 @@ def test_an_oblong_dome_does_not_go_round():
     normals /= np.linalg.norm(normals, axis=1)[:, None]
     axis = around.Axis(points, normals, np.ones(len(x)))
     assert axis.turn < 0.5
+
+
+def make_parts(folder):
+    V = FreeCAD.Vector
+    half = lambda: Part.makeCylinder(RADIUS, HEIGHT, V(0, 0, 0), V(0, 0, 1), 180)
+    other = half()
+    other.rotate(V(0, 0, 0), V(0, 0, 1), 180)
+    both = half().fuse(other)
+    place = FreeCAD.Placement(V(40, -10, 25), FreeCAD.Rotation(V(1, 2, 3), 50))
+    both.Placement = place
+    both.exportBrep(str(folder / "halves.brep"))
+    half().exportBrep(str(folder / "half.brep"))
+    Part.makeCylinder(RADIUS, HEIGHT, V(0, 0, 0), V(0, 0, 1), 90).exportBrep(
+        str(folder / "quarter.brep")
+    )
+    Part.makeCone(30, 15, 40).exportBrep(str(folder / "cone.brep"))
+    Part.makeTorus(60, 15, V(0, 0, 0), V(0, 0, 1), -180, 180, 90).exportBrep(
+        str(folder / "bend.brep")
+    )
+    Part.makeSphere(50, V(0, 0, 0), V(1, 2, 2), 50, 90, 360).exportBrep(str(folder / "cap.brep"))

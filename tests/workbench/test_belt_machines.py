@@ -1,23 +1,19 @@
 """Jobs whose belt is pressed without a wheel: a free belt, a platen; and what refuses them."""
 
 import json
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "Mod" / "BeltGrinding"))
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-
-import beltgrinding  # noqa: E402
-from beltgrinding import cli  # noqa: E402
-from beltgrinding.calibration import contacts  # noqa: E402
-from beltgrinding.contact import single_contact  # noqa: E402
-from beltgrinding.engine import InputError  # noqa: E402
-from beltgrinding.job import fork, load as jobs  # noqa: E402
-from beltgrinding.simulation.result import Result  # noqa: E402
-from test_job import plate_job  # noqa: E402
+import beltgrinding
+from beltgrinding import cli
+from beltgrinding.calibration import contacts
+from beltgrinding.contact import single_contact
+from beltgrinding.engine import InputError
+from beltgrinding.geometry import fork
+from beltgrinding.job import load as jobs
+from beltgrinding.simulation.result import Result
+from test_job import plate_job
 
 LAYER = {"thickness_mm": 5, "youngs_modulus_MPa": 2, "poissons_ratio": 0.4}
 

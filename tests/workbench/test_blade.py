@@ -1,61 +1,36 @@
 """The example blade, made by FreeCAD and ground from the command line's functions."""
 
-import os
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+import beltgrinding
+from beltgrinding.examples import blade
+from beltgrinding.inspection import picture
+from beltgrinding.programs.registry import read_program
+from support import browser, pictures
 
-import beltgrinding  # noqa: E402
-from beltgrinding.inspection import picture  # noqa: E402
-from beltgrinding.programs.registry import read_program  # noqa: E402
-from support import browser, pictures  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 DRAWN_BY = "156."  # Chromium that the kept picture of the view is of; another one has other letters
 LAID_OUT_BY = "57.2"  # weasyprint that the kept picture is of; another one breaks lines its way
 
-SCRIPT = """
-import os, sys
-status = 1
-try:
-    sys.path.insert(0, {mod!r})
-    from beltgrinding.examples import blade
-    solid, face = blade.shape()
-    assert solid.isValid() and solid.isClosed() and solid.ShapeType == "Solid"
-    blade.make({out!r})
-    status = 0
-except BaseException:
-    import traceback
-    traceback.print_exc()
-finally:
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(status)
-"""
-
 
 @pytest.fixture(scope="module")
-def example(tmp_path_factory):
+def example(freecad, tmp_path_factory):
     out = tmp_path_factory.mktemp("blade")
-    script = out / "make.py"
-    script.write_text(SCRIPT.format(mod=str(ROOT / "Mod" / "BeltGrinding"), out=str(out)))
-    environment = {**os.environ, "HOME": str(out)}
-    done = subprocess.run(
-        ["freecadcmd", str(script)],
-        stdin=subprocess.DEVNULL,
-        env=environment,
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
+    freecad.call(make_blade, out)
     return out
+
+
+def make_blade(out):
+    solid, face = blade.shape()
+    assert solid.isValid() and solid.isClosed() and solid.ShapeType == "Solid"
+    blade.make(str(out))
 
 
 @pytest.fixture(scope="module")
@@ -80,6 +55,7 @@ def test_the_job_grinds_the_pressure_side(ground):
     assert summary["in_tolerance_area_share"] > 0.2
 
 
+@pytest.mark.slow
 def test_the_manuals_report_is_that_of_the_example(example, ground):
     weasyprint = pytest.importorskip("weasyprint")
     if not shutil.which("pdftoppm"):
@@ -94,6 +70,7 @@ def test_the_manuals_report_is_that_of_the_example(example, ground):
         pictures.check(pictures.RELEASE, ["report"])
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(browser.program() is None, reason="Chromium is not installed")
 def test_the_manuals_view_is_that_of_the_example(ground):
     """The page of the view is small, and looks as the manual shows it."""

@@ -1,24 +1,20 @@
 """Calibration of the removal law: grinds of a known law, damaged tables, scans, command line."""
 
 import json
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-
-from beltgrinding.engine import InputError, core  # noqa: E402
+from beltgrinding.engine import InputError, core
 from beltgrinding.calibration import (
     calibrate as calibration,
     plot as calibration_plot,
     table as calibration_table,
-)  # noqa: E402
-from beltgrinding import cli  # noqa: E402
-from beltgrinding.simulation import run as runs  # noqa: E402
-from beltgrinding.job import law as laws, load as jobs  # noqa: E402
-from test_job import plate_job  # noqa: E402
+)
+from beltgrinding import cli
+from beltgrinding.simulation import run as runs
+from beltgrinding.job import law as laws, load as jobs
+from test_job import plate_job
 
 K, ALPHA, BETA, GAMMA = 2e-5, 1.3, 1.2, 0.1  # at 0.1 MPa, 20 m/s, 50 mm/s
 
@@ -82,6 +78,7 @@ def test_grinds_without_scatter_give_the_law_itself():
     assert np.shape(law["calibration"]["covariance"]) == (3, 3)
 
 
+@pytest.mark.slow
 def test_intervals_hold_the_truth_as_often_as_they_say():
     hits = []
     for seed in range(120):
@@ -356,6 +353,7 @@ def test_the_scan_of_a_simulated_part():
     assert scan["coefficient"] == pytest.approx(5e-5, rel=0.03)
 
 
+@pytest.mark.slow
 def test_command_line(tmp_path, capsys):
     table = write_csv(tmp_path / "grinds.csv", grinds(15, wear_J=2e5))
     law, plot, report = (str(tmp_path / name) for name in ("law.json", "plot.png", "report.json"))
@@ -369,7 +367,10 @@ def test_command_line(tmp_path, capsys):
     assert (tmp_path / "plot.png").read_bytes().startswith(b"\x89PNG")
     assert cli.main([*arguments[:-3], str(tmp_path / "plot.doc")]) == 2
     assert "a plot is a file .png" in capsys.readouterr().err
-    assert cli.main([*arguments, "--wear-unit", "nan"]) == 2
+    assert cli.main([*arguments, "--wear-unit", "0"]) == 2
     assert "positive number of joules" in capsys.readouterr().err
+    with pytest.raises(SystemExit) as ended:
+        cli.main([*arguments, "--wear-unit", "nan"])
+    assert ended.value.code == 2 and "--wear-unit" in capsys.readouterr().err
     passes = calibration.fit(grinds(16, passes=True))["report"]
     assert calibration_plot.render(passes, "svg").startswith(b"<?xml")

@@ -48,6 +48,7 @@ def grinds(alpha):
     return rows, columns
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("alpha", [1.9, 2.65])
 def test_the_law_grinds_the_very_test_grinds_again(alpha):
     rows, columns = grinds(alpha)
@@ -73,6 +74,7 @@ def test_the_law_grinds_the_very_test_grinds_again(alpha):
     assert ratio > 1.04
 
 
+@pytest.mark.slow
 def test_the_jobs_wheel_stands_for_the_grinds(tmp_path, capsys):
     _, columns = grinds(1.9)
     job = plate_job()

@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 import pytest
+import FreeCAD
+import Part
 
 from beltgrinding.engine import core
 from beltgrinding.job import load, workpiece
@@ -18,17 +20,7 @@ def parts(freecad, tmp_path_factory):
     """BREP files: a floor of 80 x 60 mm with a wall of 30 mm beyond y = 60, and one with a post of 6 mm radius, 30 mm
     high, in its middle."""
     folder = tmp_path_factory.mktemp("parts")
-    freecad.run(
-        f"""
-import FreeCAD, Part
-from pathlib import Path
-folder = Path({str(folder)!r})
-V = FreeCAD.Vector
-floor = Part.makeBox(80, 60, 10, V(0, 0, -10))
-floor.fuse(Part.makeBox(80, 10, 40, V(0, 60, -10))).removeSplitter().exportBrep(str(folder / "wall.brep"))
-floor.fuse(Part.makeCylinder(6, 40, V(40, 30, -10))).removeSplitter().exportBrep(str(folder / "post.brep"))
-"""
-    )
+    freecad.call(make_parts, folder)
     return folder
 
 
@@ -123,15 +115,7 @@ def test_round_a_post_the_pass_is_interrupted(parts):
 
 
 def test_off_the_passes_it_is_lifted_no_higher_than_there_is_room(freecad, tmp_path):
-    freecad.run(
-        f"""
-import FreeCAD, Part
-V = FreeCAD.Vector
-lid = Part.makeBox(120, 60, 5, V(0, 0, 52))
-post = Part.makeBox(2, 60, 62, V(118, 0, -5))
-Part.makeBox(120, 60, 5, V(0, 0, -5)).fuse(lid).fuse(post).removeSplitter().exportBrep({str(tmp_path / "lid.brep")!r})
-"""
-    )
+    freecad.call(make_lid, tmp_path)
     path = tmp_path / "lid.brep"
     laid = raster_path.raster(job_of(path, [floor_of(path)]), {**X, "step_over_mm": 10.0})
     heights = laid["contacts"][:, 2, 3]
@@ -143,6 +127,7 @@ Part.makeBox(120, 60, 5, V(0, 0, -5)).fuse(lid).fuse(post).removeSplitter().expo
     assert [fact for fact in high["warnings"] if fact.code == "raster.ways_blocked"]
 
 
+@pytest.mark.slow
 def test_a_body_that_is_fixed_to_the_part_is_in_the_way_too(parts):
     path = parts / "wall.brep"
     points = np.array([[30, 0, 0], [50, 0, 0], [50, 60, 0], [30, 60, 0]], np.float32)
@@ -162,13 +147,7 @@ def test_a_body_that_is_fixed_to_the_part_is_in_the_way_too(parts):
 
 
 def test_where_it_fits_nowhere_that_is_said_and_nothing_hidden(freecad, tmp_path):
-    freecad.run(
-        f"""
-import Part, FreeCAD
-V = FreeCAD.Vector
-Part.makeBox(60, 60, 40, V(0, 0, -40)).cut(Part.makeBox(60, 4, 20, V(0, 28, -20))).exportBrep({str(tmp_path / "slot.brep")!r})
-"""
-    )
+    freecad.call(make_slot, tmp_path)
     path = tmp_path / "slot.brep"
     shape = workpiece.read_design(job_of(path)["design"])
     slot = [k + 1 for k in range(shape.face_count) if abs(shape.face_area(k) - 240.0) < 1.0]
@@ -205,3 +184,30 @@ def test_the_touch_of_a_leaned_wheel_is_its_lowest_point():
     lean = math.radians(3)
     assert tool.of(job).shift(lean)[1] == pytest.approx(60 * math.sin(lean), abs=0.01)
     assert _about_x(lean) @ [0, 1, 0] == pytest.approx([0, math.cos(lean), math.sin(lean)])
+
+
+def make_parts(folder):
+    V = FreeCAD.Vector
+    floor = Part.makeBox(80, 60, 10, V(0, 0, -10))
+    floor.fuse(Part.makeBox(80, 10, 40, V(0, 60, -10))).removeSplitter().exportBrep(
+        str(folder / "wall.brep")
+    )
+    floor.fuse(Part.makeCylinder(6, 40, V(40, 30, -10))).removeSplitter().exportBrep(
+        str(folder / "post.brep")
+    )
+
+
+def make_lid(tmp_path):
+    V = FreeCAD.Vector
+    lid = Part.makeBox(120, 60, 5, V(0, 0, 52))
+    post = Part.makeBox(2, 60, 62, V(118, 0, -5))
+    Part.makeBox(120, 60, 5, V(0, 0, -5)).fuse(lid).fuse(post).removeSplitter().exportBrep(
+        str(tmp_path / "lid.brep")
+    )
+
+
+def make_slot(tmp_path):
+    V = FreeCAD.Vector
+    Part.makeBox(60, 60, 40, V(0, 0, -40)).cut(Part.makeBox(60, 4, 20, V(0, 28, -20))).exportBrep(
+        str(tmp_path / "slot.brep")
+    )

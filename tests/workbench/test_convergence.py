@@ -9,19 +9,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+import jsonschema
+import beltgrinding
+from beltgrinding.engine import Cancelled, InputError, core
+from beltgrinding.simulation import convergence, convergence_record, run as runs
+from beltgrinding.job import tolerances, load as jobs
+from beltgrinding.inspection import picture
+from beltgrinding.simulation import result as results
+from beltgrinding.base import schemas
+from test_job import plate_job
+from support.results import unseal
 
-import jsonschema  # noqa: E402
-import beltgrinding  # noqa: E402
-from beltgrinding.engine import Cancelled, InputError, core  # noqa: E402
-from beltgrinding.simulation import convergence, convergence_record, run as runs  # noqa: E402
-from beltgrinding.job import tolerances, load as jobs  # noqa: E402
-from beltgrinding.inspection import picture  # noqa: E402
-from beltgrinding.simulation import result as results  # noqa: E402
-from beltgrinding.base import schemas  # noqa: E402
-from test_job import plate_job  # noqa: E402
-from support.results import unseal  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.fixture(autouse=True)
@@ -145,9 +144,9 @@ def test_it_can_be_cancelled():
 
 def test_the_narrowest_band_counts():
     inspection = {"tolerance_mm": [-0.1, 0.1]}
-    assert tolerances.narrowest_band(inspection) == [-0.1, 0.1]
+    assert tolerances.narrowest_band(inspection) == (-0.1, 0.1)
     inspection["zones"] = [{"tolerance_mm": [0, 0.05]}, {"thickness_mm": [0, 0.01]}]
-    assert tolerances.narrowest_band(inspection) == [0, 0.05]
+    assert tolerances.narrowest_band(inspection) == (0, 0.05)
 
 
 def test_another_tolerance_is_judged_without_another_run(converged):

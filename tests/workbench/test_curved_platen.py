@@ -1,21 +1,17 @@
 """Jobs with a curved platen, and the frame that holds a free belt or a platen: geometry, bodies, what is refused."""
 
 import math
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "Mod" / "BeltGrinding"))
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-
-import beltgrinding  # noqa: E402
-from beltgrinding.cell import collision  # noqa: E402
-from beltgrinding.engine import InputError, core  # noqa: E402
-from beltgrinding.job import free_run, load as jobs, machine as machines, pressed_belt  # noqa: E402
-from beltgrinding.raster import tool as tools  # noqa: E402
-from test_belt_machines import LAYER, belt_job  # noqa: E402
+import beltgrinding
+from beltgrinding.cell import collision
+from beltgrinding.engine import InputError, core
+from beltgrinding.geometry import free_run, pressed_belt
+from beltgrinding.job import load as jobs
+from beltgrinding.raster import tool as tools
+from test_belt_machines import LAYER, belt_job
 
 RADIUS = 80.0
 
@@ -97,7 +93,7 @@ def test_plate_and_layers_lie_under_the_belt_and_are_closed():
 
 def test_the_core_and_what_is_drawn_have_one_geometry():
     machine = machine_of(curved())
-    given = machines.engine_machine(machine)
+    given = jobs.typed(jobs.validate(curved())).belt_machine
     places = np.array([-95.0, -40.0, -10.0, 0.0, 25.0, 70.0])
     for below in (-0.02, 0.02, 1.0):
         x, z = free_run.line(machine, places, below).T

@@ -1,18 +1,14 @@
 """The planner's solver against others: on a mirror's map, and on small random cases."""
 
-import sys
-
 import numpy as np
 import pytest
 from scipy.optimize import lsq_linear, minimize
-from support.freecad import ROOT
 
-sys.path[:0] = [str(ROOT / "Mod" / "BeltGrinding"), str(ROOT / "tests" / "benchmark")]
-
-import dwell_bench  # noqa: E402
-from beltgrinding.engine import core  # noqa: E402
+import dwell_bench
+from beltgrinding.engine import core
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not dwell_bench.DATA.is_file(), reason="the shared data are not here")
 def test_a_mirror_is_flattened_better_and_sooner_than_its_own_method_does():
     heights = dwell_bench.surface()

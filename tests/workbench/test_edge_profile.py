@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+import Part
 
 from beltgrinding.engine import core
 from beltgrinding.inspection import edge_profile, section_plot
@@ -122,14 +123,7 @@ def test_the_plot_tells_of_the_edge():
 def rod(freecad, tmp_path_factory):
     """A plate 40 x 30 mm, 1.6 mm thick, one of its long edges round."""
     path = tmp_path_factory.mktemp("plate") / "plate.brep"
-    freecad.run(
-        f"""
-import Part
-plate = Part.makeBox(40, 30, 1.6)
-edges = [e for e in plate.Edges if abs(e.CenterOfMass.x) < 1e-6 and abs(e.CenterOfMass.y - 15) < 1e-6]
-plate.makeFillet(0.5, edges).exportBrep({str(path)!r})
-"""
-    )
+    freecad.call(make_rod, path)
     return core.Shape.read(str(path))
 
 
@@ -151,3 +145,11 @@ def test_a_zone_has_the_figures_of_sections_across_its_edges(rod):
     assert edge_profile.of_zone(field, inside, 0.8)["sections"] > 6
     flat = np.flatnonzero(field.normals[:, 2] > 0.999)
     assert edge_profile.of_zone(field, flat[field.points[flat, 0] > 20.0][:50], 0.8) is None
+
+
+def make_rod(path):
+    plate = Part.makeBox(40, 30, 1.6)
+    edges = [
+        e for e in plate.Edges if abs(e.CenterOfMass.x) < 1e-6 and abs(e.CenterOfMass.y - 15) < 1e-6
+    ]
+    plate.makeFillet(0.5, edges).exportBrep(str(path))

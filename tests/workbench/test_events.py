@@ -3,22 +3,19 @@
 import json
 import math
 import re
-import sys
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
-sys.path.insert(0, str(ROOT / "tests" / "workbench"))
+import beltgrinding
+from beltgrinding.cell import events
+from beltgrinding.base import schemas
+from beltgrinding.simulation.result import Result
+from beltgrinding.engine import core
+from test_job import plate_job
+from support.results import unseal
 
-import beltgrinding  # noqa: E402
-from beltgrinding.cell import events  # noqa: E402
-from beltgrinding.base import schemas  # noqa: E402
-from beltgrinding.simulation.result import Result  # noqa: E402
-from beltgrinding.engine import core  # noqa: E402
-from test_job import plate_job  # noqa: E402
-from support.results import unseal  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def bad_job():

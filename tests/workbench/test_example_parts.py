@@ -1,60 +1,39 @@
 """The examples, made by FreeCAD and ground without it: sound parts, mostly good, each with its fault."""
 
+import importlib
 import json
 import os
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+import FreeCAD
+
+import beltgrinding
+from beltgrinding.programs.registry import read_program
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
-import beltgrinding  # noqa: E402
-from beltgrinding.programs.registry import read_program  # noqa: E402
 
 EXAMPLES = ("tap", "tap_belt", "vane", "knife")
-SCRIPT = """
-import importlib, os, sys
-status = 1
-try:
-    sys.path.insert(0, {mod!r})
-    for name in {names!r}:
+
+
+@pytest.fixture(scope="module")
+def made(freecad, tmp_path_factory):
+    """The folder in which each example has one of its own."""
+    out = tmp_path_factory.mktemp("examples")
+    freecad.call(make_examples, out)
+    return out
+
+
+def make_examples(out):
+    for name in EXAMPLES:
         example = importlib.import_module("beltgrinding.examples." + name)
         if hasattr(example, "shape"):  # else another one's
             solid = example.shape()[0]
             assert solid.isValid() and solid.isClosed() and solid.ShapeType == "Solid", name
             assert solid.Volume > 0, name
-        example.make(os.path.join({out!r}, name))
-    status = 0
-except BaseException:
-    import traceback
-    traceback.print_exc()
-finally:
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(status)
-"""
-
-
-@pytest.fixture(scope="module")
-def made(tmp_path_factory):
-    """The folder in which each example has one of its own."""
-    out = tmp_path_factory.mktemp("examples")
-    script = out / "make.py"
-    mod = str(ROOT / "Mod" / "BeltGrinding")
-    script.write_text(SCRIPT.format(mod=mod, names=EXAMPLES, out=str(out)))
-    done = subprocess.run(
-        ["freecadcmd", str(script)],
-        stdin=subprocess.DEVNULL,
-        env={**os.environ, "HOME": str(out)},
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
-    return out
+        example.make(os.path.join(out, name))
 
 
 def ground(folder):
@@ -71,6 +50,7 @@ def ground(folder):
     return result.summary, kinds, verdict
 
 
+@pytest.mark.slow
 def test_the_taps_wheel_is_too_large_for_the_hollow_of_its_spout(made):
     summary, kinds, verdict = ground(made / "tap")
     assert 0.85 < summary["in_tolerance_area_share"] < 0.95
@@ -86,6 +66,7 @@ def test_the_taps_wheel_is_too_large_for_the_hollow_of_its_spout(made):
     assert heights[0] < left["centroid_mm"][2] < heights[1]
 
 
+@pytest.mark.slow
 def test_the_belts_edge_cuts_the_hollow_that_it_spans(made):
     summary, kinds, verdict = ground(made / "tap_belt")
     assert summary["models"]["compliance"].startswith("free belt, 40 mm wide")
@@ -98,6 +79,7 @@ def test_the_belts_edge_cuts_the_hollow_that_it_spans(made):
     assert np.linalg.norm(np.array(worst["worst"]["point_mm"]) - [25, 0, 75]) < 12.0
 
 
+@pytest.mark.slow
 def test_the_wheel_wraps_round_the_blades_leading_edge(made):
     summary, kinds, verdict = ground(made / "vane")
     assert 0.85 < summary["in_tolerance_area_share"] < 0.95
@@ -111,6 +93,7 @@ def test_the_wheel_wraps_round_the_blades_leading_edge(made):
     assert min(shares.values()) < 0.4  # the leading edge
 
 
+@pytest.mark.slow
 def test_the_robot_slows_down_at_the_knifes_tip(made):
     summary, kinds, verdict = ground(made / "knife")
     assert 0.9 < summary["in_tolerance_area_share"] < 0.98
@@ -128,18 +111,13 @@ def test_the_robot_slows_down_at_the_knifes_tip(made):
     assert steady["below_tolerance_area_share"] < 0.7 * summary["below_tolerance_area_share"]
 
 
-def test_an_example_that_there_is_not_is_refused_and_leaves_no_document(freecad):
-    freecad.run(
-        """
-import FreeCAD
-import beltgrinding
-try:
-    beltgrinding.open_example("spoon", "spoon")
-    raise AssertionError
-except beltgrinding.InputError as error:
-    assert error.code == "objects.no_example" and "tap" in str(error), error
-assert not FreeCAD.listDocuments()
-job = beltgrinding.open_example("knife", "knife")
-assert job.Document.Label == "Knife" and job.Timing == "trapezoidal"
-"""
-    )
+@pytest.mark.freecad
+def test_an_example_that_there_is_not_is_refused_and_leaves_no_document():
+    try:
+        beltgrinding.open_example("spoon", "spoon")
+        raise AssertionError
+    except beltgrinding.InputError as error:
+        assert error.code == "objects.no_example" and "tap" in str(error), error
+    assert not FreeCAD.listDocuments()
+    job = beltgrinding.open_example("knife", "knife")
+    assert job.Document.Label == "Knife" and job.Timing == "trapezoidal"

@@ -6,6 +6,8 @@ import math
 
 import numpy as np
 import pytest
+import FreeCAD
+import Part
 from PIL import Image
 
 from beltgrinding import cli
@@ -18,14 +20,7 @@ from support.freecad import SHARED
 def bush(freecad, tmp_path):
     """A BREP of a bush, 20 mm across and 30 mm long, with a bore of 8 mm, on a plate of 40 x 40 x 5 mm."""
     path = tmp_path / "bush.brep"
-    freecad.run(
-        f"""
-import FreeCAD, Part
-plate = Part.makeBox(40, 40, 5, FreeCAD.Vector(-20, -20, -5))
-body = plate.fuse(Part.makeCylinder(10, 30)).cut(Part.makeCylinder(4, 60, FreeCAD.Vector(0, 0, -10)))
-body.exportBrep({str(path)!r})
-"""
-    )
+    freecad.call(make_bush, path)
     return path
 
 
@@ -83,6 +78,7 @@ def test_a_job_s_part_and_loose_faces(bush, tmp_path, capsys):
     assert status == 0 and len(json.loads(out)) == shape.face_count
 
 
+@pytest.mark.slow
 def test_every_face_of_real_parts_has_a_row():
     if not SHARED.is_dir():
         pytest.skip("shared data absent (set BELTGRINDING_SHARED)")
@@ -97,3 +93,105 @@ def test_every_face_of_real_parts_has_a_row():
         assert all(one.neighbours for one in found)
         png, missing = faces.draw(shape)
         assert png.startswith(b"\x89PNG") and len(missing) < shape.face_count
+
+
+@pytest.fixture(scope="module")
+def shapes(freecad, tmp_path_factory):
+    """BREP files of parts whose faces' middles are known by hand."""
+    folder = tmp_path_factory.mktemp("middles")
+    freecad.call(make_shapes, folder)
+    return folder
+
+
+def middles(path):
+    return faces.faces_of(core.Shape.read(str(path)))
+
+
+def one_of(found, kind, normal=None):
+    (face,) = [
+        one
+        for one in found
+        if one.kind == kind and (normal is None or np.allclose(one.normal, normal, atol=1e-6))
+    ]
+    return face
+
+
+def test_a_face_has_its_middle_to_a_micrometre(shapes):
+    box = middles(shapes / "box.brep")
+    for normal in np.concatenate([np.eye(3), -np.eye(3)]):
+        right = np.array([115.5, -11.5, 6.5]) + normal * [15.5, 8.5, 3.5]
+        face = one_of(box, "plane", normal)
+        np.testing.assert_allclose(face.centre, right, atol=1e-6)
+        np.testing.assert_allclose(face.centroid, right, atol=1e-6)
+    face = one_of(middles(shapes / "triangle.brep"), "plane")
+    np.testing.assert_allclose(face.centre, [3, 2, 2], atol=1e-6)
+
+
+@pytest.mark.parametrize("name, half", [("half", math.pi / 2), ("quarter", math.pi / 4)])
+def test_the_middle_of_a_part_of_a_cylinder_lies_on_it(shapes, name, half):
+    face = one_of(middles(shapes / f"{name}.brep"), "cylinder")
+    along = np.array([math.cos(half), math.sin(half), 0])
+    np.testing.assert_allclose(face.centre, 10 * along + [0, 0, 15], atol=1e-6)
+    np.testing.assert_allclose(face.normal, along, atol=1e-6)
+    np.testing.assert_allclose(
+        face.centroid, 10 * math.sin(half) / half * along + [0, 0, 15], atol=1e-6
+    )
+    top = one_of(middles(shapes / f"{name}.brep"), "plane", [0, 0, 1])
+    off = 2 / 3 * 10 * math.sin(half) / half
+    np.testing.assert_allclose(top.centre, off * along + [0, 0, 30], atol=1e-6)
+
+
+def test_a_whole_cylinder_has_its_middle_at_half_its_height(shapes):
+    face = one_of(middles(shapes / "cylinder.brep"), "cylinder")
+    np.testing.assert_allclose(face.centroid, [5, 6, 22], atol=1e-6)
+    off = np.subtract(face.centre, [5, 6, 22])
+    assert np.linalg.norm(off) == pytest.approx(10.0, abs=1e-6) and off[2] == pytest.approx(
+        0, abs=1e-6
+    )
+    np.testing.assert_allclose(face.normal, off / 10, atol=1e-6)
+
+
+def test_cones_and_domes(shapes):
+    face = one_of(middles(shapes / "cone.brep"), "cone")
+    # Of a frustum's side: height h (R + 2 r) / (3 (R + r)); of half of it 2 / pi of the mean radius there, off the axis.
+    height = 12 * (10 + 2 * 4) / (3 * (10 + 4))
+    radius = 2 / math.pi * 2 / 3 * (10**2 + 10 * 4 + 4**2) / (10 + 4)
+    np.testing.assert_allclose(face.centroid, [0, radius, height], atol=1e-6)
+    lean = np.array([0, 12, 6]) / math.hypot(12, 6)
+    np.testing.assert_allclose(face.normal, lean, atol=1e-6)
+    foot = face.centroid + lean * np.dot(np.array([0, 10, 0]) - face.centroid, lean)
+    np.testing.assert_allclose(face.centre, foot, atol=1e-6)
+    face = one_of(middles(shapes / "dome.brep"), "sphere")
+    np.testing.assert_allclose(face.centroid, [0, 0, 4], atol=1e-6)
+    assert np.linalg.norm(face.centre) == pytest.approx(8.0, abs=1e-6)
+
+
+def test_the_middle_of_a_ring_lies_on_it(shapes):
+    face = one_of(middles(shapes / "ring.brep"), "plane", [0, 0, 1])
+    np.testing.assert_allclose(face.centroid, [0, 0, 2], atol=1e-6)
+    x, y, z = face.centre
+    assert z == 2 and 6.1 < math.hypot(x, y) < 9.9
+
+
+def make_bush(path):
+    plate = Part.makeBox(40, 40, 5, FreeCAD.Vector(-20, -20, -5))
+    body = plate.fuse(Part.makeCylinder(10, 30)).cut(
+        Part.makeCylinder(4, 60, FreeCAD.Vector(0, 0, -10))
+    )
+    body.exportBrep(str(path))
+
+
+def make_shapes(folder):
+    V = FreeCAD.Vector
+    folder = str(folder)
+    Part.makeBox(31, 17, 7, V(100, -20, 3)).exportBrep(folder + "/box.brep")
+    Part.makeCylinder(10, 30, V(5, 6, 7)).exportBrep(folder + "/cylinder.brep")
+    Part.makeCylinder(10, 30, V(0, 0, 0), V(0, 0, 1), 180).exportBrep(folder + "/half.brep")
+    Part.makeCylinder(10, 30, V(0, 0, 0), V(0, 0, 1), 90).exportBrep(folder + "/quarter.brep")
+    Part.makeCone(10, 4, 12, V(0, 0, 0), V(0, 0, 1), 180).exportBrep(folder + "/cone.brep")
+    Part.makeSphere(8, V(0, 0, 0), V(0, 0, 1), 0, 90, 360).exportBrep(folder + "/dome.brep")
+    Part.makePolygon([V(0, 0, 0), V(9, 0, 0), V(0, 6, 0), V(0, 0, 0)])
+    Part.Face(Part.makePolygon([V(0, 0, 2), V(9, 0, 2), V(0, 6, 2), V(0, 0, 2)])).exportBrep(
+        folder + "/triangle.brep"
+    )
+    Part.makeCylinder(10, 2).cut(Part.makeCylinder(6, 2)).exportBrep(folder + "/ring.brep")

@@ -3,27 +3,21 @@ a made-up belt."""
 
 import copy
 import json
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "Mod" / "BeltGrinding"))
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-
-import beltgrinding  # noqa: E402
-from beltgrinding.base import schemas  # noqa: E402
-from beltgrinding.engine import InputError  # noqa: E402
+import beltgrinding
+from beltgrinding.base import schemas
+from beltgrinding.engine import InputError
 from beltgrinding.inspection import (
     finish as finishes,
     finish_zones,
     verdict as verdicts,
-)  # noqa: E402
-from beltgrinding.simulation.result import Result  # noqa: E402
-from support import synthetic_finish as made_up  # noqa: E402
-from test_job import plate_job  # noqa: E402
+)
+from beltgrinding.simulation.result import Result
+from support import synthetic_finish as made_up
+from test_job import plate_job
 
 ALONG = [1.0, 0.0, 0.0]
 

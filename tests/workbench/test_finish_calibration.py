@@ -1,23 +1,17 @@
 """Calibration of the finish, on made-up measurements whose truth is known."""
 
 import json
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "Mod" / "BeltGrinding"))
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-
-from beltgrinding import calibration, cli  # noqa: E402
-from beltgrinding.base import schemas  # noqa: E402
-from beltgrinding.calibration import finish, finish_table  # noqa: E402
-from beltgrinding.engine import Cancelled, InputError, core  # noqa: E402
-from beltgrinding.job import load as jobs  # noqa: E402
-from support import synthetic_finish as made_up  # noqa: E402
-from test_job import plate_job  # noqa: E402
+from beltgrinding import calibration, cli
+from beltgrinding.base import schemas
+from beltgrinding.calibration import finish, finish_table
+from beltgrinding.engine import Cancelled, InputError, core
+from beltgrinding.job import load as jobs
+from support import synthetic_finish as made_up
+from test_job import plate_job
 
 TRUTH = made_up.TRUTH
 
@@ -49,6 +43,7 @@ def test_without_scatter_the_truth_is_found():
     assert not list(schemas.problems(model, rule, "model"))
 
 
+@pytest.mark.slow
 def test_intervals_hold_the_truth_in_nearly_all_tables():
     inside = total = 0
     for seed in range(12):

@@ -4,28 +4,26 @@ belt."""
 import copy
 import json
 import subprocess
-import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
-sys.path.insert(0, str(ROOT / "tests" / "workbench"))
-sys.path.insert(0, str(ROOT / "tests"))
+import beltgrinding
+from beltgrinding.base import schemas
+from beltgrinding.base.messages import event_message
+from beltgrinding.cell import events as event_lists, motions
+from beltgrinding.inspection import finish_events, finish_zones, verdict as verdicts
+from beltgrinding.job.typed import typed
+from beltgrinding.simulation.result import Result
+from beltgrinding.reporting import language
+from beltgrinding.studies import figures, names
+from support import synthetic_finish as made_up
+from support.results import unseal
+from test_finish import ALONG, crossing_job, finish_job, zone
 
-import beltgrinding  # noqa: E402
-from beltgrinding.base import schemas  # noqa: E402
-from beltgrinding.base.messages import event_message  # noqa: E402
-from beltgrinding.cell import events as event_lists, motions  # noqa: E402
-from beltgrinding.inspection import finish_events, finish_zones, verdict as verdicts  # noqa: E402
-from beltgrinding.simulation.result import Result  # noqa: E402
-from beltgrinding.reporting import language  # noqa: E402
-from beltgrinding.studies import figures, names  # noqa: E402
-from support import synthetic_finish as made_up  # noqa: E402
-from support.results import unseal  # noqa: E402
-from test_finish import ALONG, crossing_job, finish_job, zone  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 KINDS = {finish_events.ROUGH, finish_events.LAY, finish_events.UNKNOWN}
 
@@ -162,13 +160,13 @@ def test_each_zone_and_each_failure_is_one_event_by_its_own_program(crossed):
 
 def test_scratches_that_a_pass_wears_off_are_told_so():
     result = beltgrinding.run(lined(crossing_job(rest_per_pass=0.01)))
-    job = result.job
+    given = typed(result.job).finish
     samples = np.nan_to_num(np.asarray(result.field.finish["crossing"])) > 1.0
     assert samples.any()
     judged = {"symbol": "X", "worst": {"angle_deg": None, "crossing_deg": 90.0}}
-    assert finish_events._why_wrong(job["finish"], judged, {}).code == "event.lay_worn_off"
+    assert finish_events._why_wrong(given, judged, {}).code == "event.lay_worn_off"
     judged["worst"]["crossing_deg"] = 5.0
-    kept = {**job["finish"], "rest_per_pass": 0.5}
+    kept = replace(given, rest_per_pass=0.5)
     assert finish_events._why_wrong(kept, judged, {}).code == "event.lay_not_crossed"
 
 

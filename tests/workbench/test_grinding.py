@@ -8,6 +8,7 @@ import pytest
 from beltgrinding import cli
 from beltgrinding.engine import InputError
 from beltgrinding.job import load as jobs
+from beltgrinding.job.typed import typed
 from beltgrinding.planning import grinding, rounds
 from test_job import plate
 
@@ -47,6 +48,7 @@ def test_stripes_between_passes_bring_them_closer():
     assert alone.rounds[0]["in_tolerance"] == pytest.approx(share, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_too_much_stock_for_the_least_feed_repeats_the_passes():
     limits = {**QUICK, "feed_min_mm_s": 60.0}
     found = grinding.grind(job_of(0.6), {**PASSES, "max_tcp_feed_mm_s": 100.0}, limits)
@@ -60,10 +62,11 @@ def test_forces_go_down_only_unless_asked():
     found = grinding.grind(job_of(), PASSES, QUICK)
     forces = found.plan.commands.force(found.plan.factors)
     assert forces.max() <= 30.0 + 1e-9 and found.plan.factors.min() >= grinding.GENTLE - 1e-9
-    position = grinding._with_forces(job_of(control="position"), rounds.validate({}))
+    position = grinding._with_forces(typed(job_of(control="position")), rounds.validate({}))
     assert position["force_min_N"] == 0.0
 
 
+@pytest.mark.slow
 def test_a_part_alone_becomes_a_program(tmp_path, capsys):
     (tmp_path / "plate.brep").write_text(plate().write_brep())
     out = tmp_path / "out"

@@ -1,19 +1,15 @@
 """The closed mesh of the ground part: files, and the command line."""
 
 import json
-import sys
 import zipfile
 
 import numpy as np
 import pytest
-from support.freecad import ROOT
 
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
-
-import beltgrinding  # noqa: E402
-from beltgrinding.engine import InputError, core  # noqa: E402
-from beltgrinding.inspection import closed_mesh  # noqa: E402
-from test_job import cli, plate_job  # noqa: E402
+import beltgrinding
+from beltgrinding.engine import InputError, core
+from beltgrinding.inspection import closed_mesh
+from test_job import cli, plate_job
 
 SIZE = (60.0, 40.0, 12.0)
 

@@ -1,21 +1,19 @@
 """Warnings that say the same of many places become one; nothing is lost."""
 
 import json
-import sys
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+from beltgrinding import cli
+from beltgrinding.base.grouping import grouped
+from beltgrinding.base.messages import fact_data, sentence, warnings
+from beltgrinding.engine import Fact
+from beltgrinding.job.poses import program_arrays
+from beltgrinding.programs.program import Problem
+from beltgrinding.programs.registry import read_program, told_problems
 
-from beltgrinding import cli  # noqa: E402
-from beltgrinding.base.grouping import grouped  # noqa: E402
-from beltgrinding.base.messages import fact_data, sentence, warnings  # noqa: E402
-from beltgrinding.engine import Fact  # noqa: E402
-from beltgrinding.job.poses import program_arrays  # noqa: E402
-from beltgrinding.programs.program import Problem  # noqa: E402
-from beltgrinding.programs.registry import read_program, told_problems  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def problem(line, code="programs.left_out", file="p.src", reason="programs.x"):
@@ -86,7 +84,7 @@ def test_speeds_that_are_not_known_are_one_warning_with_the_speed_that_is_taken(
 
 
 def test_a_program_without_a_word_of_speed_says_what_is_taken(tmp_path):
-    (tmp_path / "p.nc").write_text("G0 X0 Y0 Z0\nG1 X9\nG1 X20\nM30\n")
+    (tmp_path / "p.nc").write_text("G21 G0 X0 Y0 Z0\nG1 X9\nG1 X20\nM30\n")
     (note,) = told_problems(read_program(tmp_path / "p.nc"), 100.0)
     assert note.code == "programs.speeds_assumed" and (note.line, note.arguments["count"]) == (2, 2)
     (tmp_path / "p.csv").write_text("x_mm,y_mm,z_mm,qw,qx,qy,qz\n0,0,0,1,0,0,0\n9,0,0,1,0,0,0\n")

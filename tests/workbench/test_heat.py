@@ -1,21 +1,16 @@
 """Temperatures of a job: from the key to result file, verdict, events, report; and nothing without it."""
 
 import json
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "Mod" / "BeltGrinding"))
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-
-import beltgrinding  # noqa: E402
-from beltgrinding.base import schemas  # noqa: E402
-from beltgrinding.engine import InputError  # noqa: E402
-from beltgrinding.inspection import heat as heats, verdict as verdicts  # noqa: E402
-from beltgrinding.simulation.result import Result  # noqa: E402
-from test_job import plate_job  # noqa: E402
+import beltgrinding
+from beltgrinding.base import schemas
+from beltgrinding.engine import InputError
+from beltgrinding.inspection import heat as heats, verdict as verdicts
+from beltgrinding.simulation.result import Result
+from test_job import plate_job
 
 STEEL = {
     "material": "1.4301",

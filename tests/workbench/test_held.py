@@ -4,9 +4,12 @@ import json
 
 import numpy as np
 import pytest
+import FreeCAD
+import Part
 
-from beltgrinding.engine import core
+import beltgrinding
 from beltgrinding.job import load, poses
+from beltgrinding.objects import raster_path as objects
 from beltgrinding.raster import raster_path
 from beltgrinding.raster.held import Held
 from beltgrinding.simulation import run as runs
@@ -56,6 +59,7 @@ def collisions(job, laid):
     return {tuple(e["bodies"]) for e in runs.run(job).events if e["kind"] == "collision"}
 
 
+@pytest.mark.slow
 def test_a_fork_keeps_passes_off_a_wall(wall):
     upright = {**X, "max_tilt_deg": 0.0}
     bare = raster_path.raster(wall, upright)
@@ -193,78 +197,65 @@ def test_a_belt_brings_its_arms_nearer_by_what_it_gives_way(wall):
     assert met[0.0] == -1 and held.names[met[10.0]] in ("arms", "belt_before", "belt_behind")
 
 
-def test_a_documents_passes_keep_off_bodies_and_are_laid_anew_with_them(freecad):
-    freecad.run(
-        """
-import json
-from pathlib import Path
+@pytest.mark.slow
+@pytest.mark.freecad
+def test_a_documents_passes_keep_off_bodies_and_are_laid_anew_with_them():
+    V = FreeCAD.Vector
+    doc = FreeCAD.newDocument("held")
+    part = doc.addObject("Part::Feature", "Plate")
+    part.Shape = Part.makeBox(80, 60, 10, V(0, 0, -10))
+    clamp = doc.addObject("Part::Feature", "Clamp")
+    clamp.Shape = Part.makeBox(20, 60, 30, V(60, 0, 0))
+    housing = doc.addObject("Part::Feature", "Housing")  # before the wheel's left face
+    housing.Shape = Part.makeBox(60, 15, 60, V(-30, -25, -66))
+    doc.recompute()
+    job = beltgrinding.make_job(part, ["Face6"], Spacing="1 mm")
+    stock = beltgrinding.make_stock(job, Allowance="0.2 mm")
+    machine = beltgrinding.make_belt_machine(job, Force="20 N", WheelRadius=20, WheelWidth=10)
+    path = beltgrinding.make_raster(job, Along="direction", Direction=V(1, 0, 0), StepOver="5 mm")
 
-import FreeCAD
-import numpy as np
-import Part
-import beltgrinding
-from beltgrinding.objects import raster_path as objects
-from beltgrinding.raster import raster_path
+    def ends():
+        frames = np.asarray(path.Proxy.arrays(path)["frames"])
+        on = ~np.asarray(path.Proxy.arrays(path)["rapid"]) & (frames[:, 2, 3] < 1e-6)
+        return frames[on, 0, 3].max(), frames[on, 1, 3].max()
 
-V = FreeCAD.Vector
-doc = FreeCAD.newDocument("held")
-part = doc.addObject("Part::Feature", "Plate")
-part.Shape = Part.makeBox(80, 60, 10, V(0, 0, -10))
-clamp = doc.addObject("Part::Feature", "Clamp")
-clamp.Shape = Part.makeBox(20, 60, 30, V(60, 0, 0))
-housing = doc.addObject("Part::Feature", "Housing")  # before the wheel's left face
-housing.Shape = Part.makeBox(60, 15, 60, V(-30, -25, -66))
-doc.recompute()
-job = beltgrinding.make_job(part, ["Face6"], Spacing="1 mm")
-stock = beltgrinding.make_stock(job, Allowance="0.2 mm")
-machine = beltgrinding.make_belt_machine(job, Force="20 N", WheelRadius=20, WheelWidth=10)
-path = beltgrinding.make_raster(job, Along="direction", Direction=V(1, 0, 0), StepOver="5 mm")
+    free = ends()
+    assert free[0] > 75 and path.LeftOut < 1, (free, path.LeftOut)
+    machine.BodiesAtPart = [clamp]
+    doc.recompute()
+    clamped = ends()
+    assert clamped[0] < 60 and path.LeftOut > 30, (clamped, path.LeftOut)
+    # The same as from the job's file.
+    beltgrinding.export_job(job, "job.json")
+    given = objects.settings_of(path)
+    laid = raster_path.raster(load.load("job.json"), given)
+    assert np.allclose(laid["frames"], path.Proxy.arrays(path)["frames"], atol=1e-4)
+    clamp.Placement.Base = V(0, 0, 200)
+    doc.recompute()
+    assert abs(ends()[0] - free[0]) < 1e-6
 
-def ends():
-    frames = np.asarray(path.Proxy.arrays(path)["frames"])
-    on = ~np.asarray(path.Proxy.arrays(path)["rapid"]) & (frames[:, 2, 3] < 1e-6)
-    return frames[on, 0, 3].max(), frames[on, 1, 3].max()
+    # What goes with the wheel: below the floor's level beside it, it keeps the wheel on the plate's one side.
+    stop = doc.addObject("Part::Feature", "Stop")
+    stop.Shape = Part.makeBox(80, 10, 8, V(0, 60, 0))
+    machine.BodiesAtWheel = [housing]
+    machine.BodiesAtPart = [stop]
+    doc.recompute()
+    told = "\n".join(path.Warnings)
+    assert "Housing" in told and ends()[1] < 60 - 20, (told, ends())
+    machine.CheckCollisions = False
+    doc.recompute()
+    assert "Housing" not in "\n".join(path.Warnings) and ends()[1] > 50
 
-free = ends()
-assert free[0] > 75 and path.LeftOut < 1, (free, path.LeftOut)
-machine.BodiesAtPart = [clamp]
-doc.recompute()
-clamped = ends()
-assert clamped[0] < 60 and path.LeftOut > 30, (clamped, path.LeftOut)
-# The same as from the job's file.
-beltgrinding.export_job(job, "job.json")
-from beltgrinding.job import load
-given = objects.settings_of(path)
-laid = raster_path.raster(load.load("job.json"), given)
-assert np.allclose(laid["frames"], path.Proxy.arrays(path)["frames"], atol=1e-4)
-clamp.Placement.Base = V(0, 0, 200)
-doc.recompute()
-assert abs(ends()[0] - free[0]) < 1e-6
-
-# What goes with the wheel: below the floor's level beside it, it keeps the wheel on the plate's one side.
-stop = doc.addObject("Part::Feature", "Stop")
-stop.Shape = Part.makeBox(80, 10, 8, V(0, 60, 0))
-machine.BodiesAtWheel = [housing]
-machine.BodiesAtPart = [stop]
-doc.recompute()
-told = "\\n".join(path.Warnings)
-assert "Housing" in told and ends()[1] < 60 - 20, (told, ends())
-machine.CheckCollisions = False
-doc.recompute()
-assert "Housing" not in "\\n".join(path.Warnings) and ends()[1] > 50
-
-# Its distance to the part counts the stock; without such bodies passes stay as they are when that changes.
-machine.CheckCollisions = True
-doc.recompute()
-before = path.Inputs
-stock.Allowance = "0.4 mm"
-doc.recompute()
-assert path.Inputs != before
-machine.BodiesAtWheel = machine.BodiesAtPart = []
-doc.recompute()
-before = path.Inputs
-stock.Allowance = "0.6 mm"
-doc.recompute()
-assert path.Inputs == before
-"""
-    )
+    # Its distance to the part counts the stock; without such bodies passes stay as they are when that changes.
+    machine.CheckCollisions = True
+    doc.recompute()
+    before = path.Inputs
+    stock.Allowance = "0.4 mm"
+    doc.recompute()
+    assert path.Inputs != before
+    machine.BodiesAtWheel = machine.BodiesAtPart = []
+    doc.recompute()
+    before = path.Inputs
+    stock.Allowance = "0.6 mm"
+    doc.recompute()
+    assert path.Inputs == before

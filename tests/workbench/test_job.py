@@ -11,12 +11,11 @@ import h5py
 import numpy as np
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+import beltgrinding
+from beltgrinding.engine import InputError, core
+from beltgrinding.job import poses
 
-import beltgrinding  # noqa: E402
-from beltgrinding.engine import InputError, core  # noqa: E402
-from beltgrinding.job import poses  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 
 SHARED = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared"))

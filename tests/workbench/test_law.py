@@ -2,21 +2,16 @@
 
 import json
 import math
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "Mod" / "BeltGrinding"))
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-
-import beltgrinding  # noqa: E402
-from beltgrinding.engine import InputError, core  # noqa: E402
-from beltgrinding import cli  # noqa: E402
-from beltgrinding.job import law as laws  # noqa: E402
-from beltgrinding.simulation.result import Result  # noqa: E402
-from test_job import plate_job  # noqa: E402
+import beltgrinding
+from beltgrinding.engine import InputError, core
+from beltgrinding import cli
+from beltgrinding.job import law as laws
+from beltgrinding.simulation.result import Result
+from test_job import plate_job
 
 
 def run(**law):
@@ -179,6 +174,7 @@ def test_a_scan_of_the_ground_part_gives_the_coefficient(tmp_path, capsys):
     assert cli.main(["calibrate-scan", str(tmp_path), scan, "-o", "x.json"]) == 2
 
 
+@pytest.mark.slow
 def test_the_uncertainty_is_that_of_many_laws_drawn_at_random():
     covariance = np.array([[0.01, 0.012], [0.012, 0.04]])
     calibration = {**CALIBRATION, "covariance": covariance.tolist(), "scatter": 0.05}

@@ -57,6 +57,7 @@ def ground(law, work, random=None, scatter=0.0):
     return height + (0.01 * random.normal(size=len(height)) if random else 0.0), result
 
 
+@pytest.mark.slow
 def test_a_batch_is_predicted_far_better_by_the_fourth_part():
     random, law, work, errors = np.random.default_rng(8), BELIEVED, 0.0, []
     for part in range(PARTS):
@@ -103,6 +104,7 @@ def test_a_law_that_was_never_calibrated_learns_its_coefficient(model):
     assert again.factor == pytest.approx(1.0, abs=0.03)
 
 
+@pytest.mark.slow
 def test_intervals_hold_the_truth_about_as_often_as_they_say():
     """Laws drawn from what is believed, each tried on two parts."""
     random, held = np.random.default_rng(3), []

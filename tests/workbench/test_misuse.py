@@ -10,17 +10,14 @@ import h5py
 import numpy as np
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-for folder in (ROOT / "Mod" / "BeltGrinding", ROOT / "tests" / "workbench"):
-    if str(folder) not in sys.path:
-        sys.path.insert(0, str(folder))
+import beltgrinding
+from beltgrinding.base import messages
+from beltgrinding.base.cells import cell, comment_cells
+from beltgrinding.engine import InputError, core
+from support.results import unseal
+from test_job import plate_job
 
-import beltgrinding  # noqa: E402
-from beltgrinding.base import messages  # noqa: E402
-from beltgrinding.base.cells import cell, comment_cells  # noqa: E402
-from beltgrinding.engine import InputError, core  # noqa: E402
-from support.results import unseal  # noqa: E402
-from test_job import plate_job  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 START = ROOT / "Mod" / "BeltGrinding" / "beltgrind.py"
 PYTHONPATH = str(Path(core.__file__).parent)
@@ -199,6 +196,7 @@ def test_a_cache_that_cannot_be_used_is_done_without(tmp_path, job):
     assert heights.count(heights[0]) == 4
 
 
+@pytest.mark.slow
 def test_a_result_of_anything_is_one_line(tmp_path, job):
     done = call("run", written(tmp_path, job), "-o", "out", "-q", cwd=tmp_path)
     assert done.returncode == 0

@@ -121,6 +121,7 @@ def test_feeds_keep_their_limits(job):
     assert ((state == reasons.GOOD) == ((height >= lower) & (height <= upper))).all()
 
 
+@pytest.mark.slow
 def test_time_is_saved_where_the_share_allows_it(job):
     settings = {**SETTINGS, "feed_max_mm_s": 300.0}
     most = planning.plan(job, settings)

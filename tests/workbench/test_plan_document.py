@@ -1,212 +1,226 @@
 """Plans as document objects, without a window: what a macro does."""
 
-from test_document import BLOCK
+import json
+from pathlib import Path
 
-RASTER = (
-    BLOCK
-    + """
+import pytest
+import FreeCAD
+
+import beltgrinding
+from beltgrinding import InputError
+from support.block import block, make, near, write_pass
+
+
 def raster_job(doc, **stock):
     job = beltgrinding.make_job(block(doc), ["Face6"], Spacing="1 mm")
     beltgrinding.make_stock(job, **(stock or {"Allowance": "0.2 mm"}))
-    beltgrinding.make_belt_machine(job, WheelRadius=30, WheelWidth="15 mm", CrownRadius="80 mm", Force="30 N")
-    beltgrinding.make_raster(job, Along="direction", Direction=FreeCAD.Vector(1, 0, 0), Feed="90 mm/s")
+    beltgrinding.make_belt_machine(
+        job, WheelRadius=30, WheelWidth="15 mm", CrownRadius="80 mm", Force="30 N"
+    )
+    beltgrinding.make_raster(
+        job, Along="direction", Direction=FreeCAD.Vector(1, 0, 0), Feed="90 mm/s"
+    )
     return job
-QUICK = {"Rounds": 3, "Check": False}
-"""
-)
 
 
-def test_a_plan_is_kept_applied_taken_back_and_goes_out_of_date(freecad):
-    freecad.run(
-        RASTER
-        + """
-doc = FreeCAD.newDocument("life")
-doc.UndoMode = 1
-job = raster_job(doc)
-path = doc.RasterPath
-feeds, digest = list(path.Feeds), path.Proxy.digest(path)
-plan = beltgrinding.make_plan(job, **QUICK)
-assert plan in job.Group and plan.Better and not plan.Applied and not plan.OutOfDate
-assert plan.InTolerance > plan.InToleranceBefore + 10.0, (plan.InToleranceBefore, plan.InTolerance)
-assert list(path.Feeds) == feeds and path.Proxy.digest(path) == digest, "planning changes no path"
-assert len(plan.NewFeeds) == len(feeds) == len(plan.Along) and plan.Along[-1] > 100.0
-assert plan.Rates and plan.Proxy.data(plan)["better"]
-assert Path(plan.Picture).read_bytes().startswith(b"\\x89PNG")
+def raster():
+    QUICK = {"Rounds": 3, "Check": False}
+    return QUICK
 
-doc.openTransaction("Apply")
-beltgrinding.apply_plan(plan)
-doc.commitTransaction()
-assert plan.Applied and not plan.OutOfDate and path.Planned
-assert list(path.Feeds) == list(plan.NewFeeds) != feeds
-simulation = beltgrinding.simulate(job)
-from beltgrinding.objects.deviation import Deviation
-deviation = beltgrinding.make_deviation(job)
-assert near(deviation.InTolerance, plan.InTolerance, 1e-6), "what was told is what is ground"
 
-doc.saveAs("plan.FCStd")
-FreeCAD.closeDocument("life")
-doc = FreeCAD.openDocument("plan.FCStd")
-plan, job, path = doc.Plan, doc.BeltGrindingJob, doc.RasterPath
-doc.recompute()
-assert plan.Applied and path.Planned and Path(plan.Picture).exists()
+@pytest.mark.slow
+@pytest.mark.freecad
+def test_a_plan_is_kept_applied_taken_back_and_goes_out_of_date():
+    write_pass()
+    QUICK = raster()
+    doc = FreeCAD.newDocument("life")
+    doc.UndoMode = 1
+    job = raster_job(doc)
+    path = doc.RasterPath
+    feeds, digest = list(path.Feeds), path.Proxy.digest(path)
+    plan = beltgrinding.make_plan(job, **QUICK)
+    assert plan in job.Group and plan.Better and not plan.Applied and not plan.OutOfDate
+    assert plan.InTolerance > plan.InToleranceBefore + 10.0, (
+        plan.InToleranceBefore,
+        plan.InTolerance,
+    )
+    assert (
+        list(path.Feeds) == feeds and path.Proxy.digest(path) == digest
+    ), "planning changes no path"
+    assert len(plan.NewFeeds) == len(feeds) == len(plan.Along) and plan.Along[-1] > 100.0
+    assert plan.Rates and plan.Proxy.data(plan)["better"]
+    assert Path(plan.Picture).read_bytes().startswith(b"\x89PNG")
 
-# A setting that the passes depend on lays them anew: the plan is of others.
-path.Feed = "80 mm/s"
-doc.recompute()
-assert not path.Planned and any("laid anew" in one for one in path.Warnings), path.Warnings
-assert not plan.Applied and plan.OutOfDate
-try:
+    doc.openTransaction("Apply")
     beltgrinding.apply_plan(plan)
-    raise AssertionError("out of date")
-except InputError as error:
-    assert "plan again" in str(error)
-path.Feed = "90 mm/s"
-doc.recompute()
-assert not plan.OutOfDate and not plan.Applied, "as it was when it was planned"
-job.ToleranceUpper = "0.2 mm"
-doc.recompute()
-assert plan.OutOfDate
-job.ToleranceUpper = "0.05 mm"
-plan.FeedMax = "200 mm/s"
-doc.recompute()
-assert plan.OutOfDate, "another setting"
-"""
-    )
+    doc.commitTransaction()
+    assert plan.Applied and not plan.OutOfDate and path.Planned
+    assert list(path.Feeds) == list(plan.NewFeeds) != feeds
+    simulation = beltgrinding.simulate(job)
+    deviation = beltgrinding.make_deviation(job)
+    assert near(deviation.InTolerance, plan.InTolerance, 1e-6), "what was told is what is ground"
 
+    doc.saveAs("plan.FCStd")
+    FreeCAD.closeDocument("life")
+    doc = FreeCAD.openDocument("plan.FCStd")
+    plan, job, path = doc.Plan, doc.BeltGrindingJob, doc.RasterPath
+    doc.recompute()
+    assert plan.Applied and path.Planned and Path(plan.Picture).exists()
 
-def test_a_plan_replaces_one_feed_for_all_and_plans_forces(freecad):
-    freecad.run(
-        RASTER
-        + """
-doc = FreeCAD.newDocument("life")
-job = raster_job(doc)
-path = doc.RasterPath
-path.FeedOverride, path.ForceOverride = 100, "25 N"
-doc.recompute()
-plan = beltgrinding.make_plan(job, ForceMin="10 N", ForceMax="60 N", FeedMin="60 mm/s", FeedMax="120 mm/s", **QUICK)
-assert set(plan.OldForces) == {25.0} and max(plan.NewForces) <= 60.0 + 1e-9
-moving = [f for f, fast in zip(plan.NewFeeds, plan.Rapid) if not fast]
-assert 60.0 - 1e-9 <= min(moving) and max(moving) <= 120.0 + 1e-9
-beltgrinding.apply_plan(plan)
-assert path.FeedOverride.Value == 0.0 and path.ForceOverride.Value == 0.0
-simulation = beltgrinding.simulate(job)
-assert near(beltgrinding.make_deviation(job).InTolerance, plan.InTolerance, 1e-6)
-"""
-    )
-
-
-def test_programs_of_files_are_written_with_their_new_feeds_only(freecad):
-    freecad.run(
-        BLOCK
-        + """
-import re
-doc = FreeCAD.newDocument("life")
-frames = "{X %d,Y %d,Z 20.0,A 0,B 0,C 180}"
-lines = ["DEF grind()", "$TOOL={X 0,Y 0,Z 0,A 0,B 0,C 0}", "$BASE={X 0,Y 0,Z 0,A 0,B 0,C 0}"]
-for y in range(4, 40, 4):
-    lines += ["PTP " + frames % (2, y), "$VEL.CP=0.09"] + [f"LIN {frames % (x, y)}" for x in range(6, 60, 4)]
-Path("grind.src").write_text("\\n".join([*lines, "END"]) + "\\n")
-job = make(block(doc))
-doc.removeObject("RobotPath")
-path = beltgrinding.import_program(job, "grind.src")
-plan = beltgrinding.make_plan(job, Rounds=3, Check=False)
-assert plan.Better, plan.Rates
-Path("out").mkdir()
-files, without = beltgrinding.write_plan(plan, "out")
-assert [f.name for f in files] == ["grind.src"] and not without
-text = Path("out/grind.src").read_text()
-unchanged = [l for l in text.splitlines() if "VEL" not in l]
-assert unchanged == [l for l in lines + ["END"] if "VEL" not in l]
-again = beltgrinding.import_program(job, "out/grind.src")
-for one, other in zip(again.Feeds, plan.NewFeeds):
-    assert near(one, other, 1e-4), (one, other)
-doc.removeObject(again.Name)
-doc.recompute()
-
-before = Path("out/grind.src").read_bytes()
-for wrong, words in ((lambda: beltgrinding.write_plan(plan, "out"), "there already"),
-                     (lambda: beltgrinding.write_plan(plan, "nowhere"), "no folder"),
-                     (lambda: beltgrinding.write_plan(plan, "."), "there already")):
+    # A setting that the passes depend on lays them anew: the plan is of others.
+    path.Feed = "80 mm/s"
+    doc.recompute()
+    assert not path.Planned and any("laid anew" in one for one in path.Warnings), path.Warnings
+    assert not plan.Applied and plan.OutOfDate
     try:
-        wrong()
-        raise AssertionError(words)
+        beltgrinding.apply_plan(plan)
+        raise AssertionError("out of date")
     except InputError as error:
-        assert words in str(error), error
-assert Path("out/grind.src").read_bytes() == before
-Path("grind.src").write_text("\\n".join([*lines[:-1], "END"]) + "\\n")
-Path("other").mkdir()
-try:
-    beltgrinding.write_plan(plan, "other")
-    raise AssertionError("the file is another one")
-except InputError as error:
-    assert "no longer" in str(error), error
-assert not list(Path("other").iterdir())
-"""
+        assert "plan again" in str(error)
+    path.Feed = "90 mm/s"
+    doc.recompute()
+    assert not plan.OutOfDate and not plan.Applied, "as it was when it was planned"
+    job.ToleranceUpper = "0.2 mm"
+    doc.recompute()
+    assert plan.OutOfDate
+    job.ToleranceUpper = "0.05 mm"
+    plan.FeedMax = "200 mm/s"
+    doc.recompute()
+    assert plan.OutOfDate, "another setting"
+
+
+@pytest.mark.freecad
+def test_a_plan_replaces_one_feed_for_all_and_plans_forces():
+    write_pass()
+    QUICK = raster()
+    doc = FreeCAD.newDocument("life")
+    job = raster_job(doc)
+    path = doc.RasterPath
+    path.FeedOverride, path.ForceOverride = 100, "25 N"
+    doc.recompute()
+    plan = beltgrinding.make_plan(
+        job, ForceMin="10 N", ForceMax="60 N", FeedMin="60 mm/s", FeedMax="120 mm/s", **QUICK
     )
-
-
-def test_what_cannot_be_planned_is_refused_and_changes_nothing(freecad):
-    freecad.run(
-        RASTER
-        + """
-doc = FreeCAD.newDocument("life")
-job = raster_job(doc)
-for settings, words in (({"FeedMin": "200 mm/s"}, "feed_min_mm_s"),
-                        ({"Keep": json.dumps([{"first_line": 4000}])}, "keep"),):
-    try:
-        beltgrinding.make_plan(job, **settings, **QUICK)
-        raise AssertionError(words)
-    except InputError as error:
-        assert words in str(error), error
-    assert doc.getObject("Plan") is None
-plan = beltgrinding.make_plan(job, compute=False)
-try:
+    assert set(plan.OldForces) == {25.0} and max(plan.NewForces) <= 60.0 + 1e-9
+    moving = [f for f, fast in zip(plan.NewFeeds, plan.Rapid) if not fast]
+    assert 60.0 - 1e-9 <= min(moving) and max(moving) <= 120.0 + 1e-9
     beltgrinding.apply_plan(plan)
-    raise AssertionError("nothing is planned")
-except InputError as error:
-    assert "nothing is planned yet" in str(error)
-try:
-    beltgrinding.make_plan(job, FeedMin="200 mm/s", **QUICK)
-    raise AssertionError("limits")
-except InputError as error:
-    assert doc.getObject("Plan") is plan and not plan.Data, "the one that was there stays"
-"""
-    )
+    assert path.FeedOverride.Value == 0.0 and path.ForceOverride.Value == 0.0
+    simulation = beltgrinding.simulate(job)
+    assert near(beltgrinding.make_deviation(job).InTolerance, plan.InTolerance, 1e-6)
 
 
-def test_passes_are_laid_and_planned_and_applied_together(freecad):
-    freecad.run(
-        RASTER
-        + """
-doc = FreeCAD.newDocument("life")
-job = raster_job(doc)
-path = doc.RasterPath
-path.StepOver = "18 mm"  # so far apart that stripes stay between them
-doc.recompute()
-poses = len(path.Poses)
-only = beltgrinding.make_plan(job, Rounds=3, Check=False).InTolerance
-plan = beltgrinding.make_plan(job, LayPasses=True, Rounds=3, Check=False)
-assert plan.InTolerance > only + 10.0, (only, plan.InTolerance)
-assert path.StepOver.Value == 18.0 and len(path.Poses) == poses and not plan.OutOfDate
-assert len(plan.NewFeeds) > poses and json.loads(plan.Raster)["step_over_mm"] < 18.0
-told = plan.InTolerance
-doc.saveAs("laid.FCStd")
-FreeCAD.closeDocument("life")
-doc = FreeCAD.openDocument("laid.FCStd")
-plan, job, path = doc.Plan, doc.BeltGrindingJob, doc.RasterPath
-beltgrinding.apply_plan(plan)
-assert plan.Applied and path.StepOver.Value < 18.0 and list(path.Feeds) == list(plan.NewFeeds)
-beltgrinding.simulate(job)
-assert near(beltgrinding.make_deviation(job).InTolerance, told, 1e-6)
-doc.recompute()
-assert path.Planned and plan.Applied
+@pytest.mark.freecad
+def test_programs_of_files_are_written_with_their_new_feeds_only():
+    write_pass()
+    doc = FreeCAD.newDocument("life")
+    frames = "{X %d,Y %d,Z 20.0,A 0,B 0,C 180}"
+    lines = ["DEF grind()", "$TOOL={X 0,Y 0,Z 0,A 0,B 0,C 0}", "$BASE={X 0,Y 0,Z 0,A 0,B 0,C 0}"]
+    for y in range(4, 40, 4):
+        lines += ["PTP " + frames % (2, y), "$VEL.CP=0.09"] + [
+            f"LIN {frames % (x, y)}" for x in range(6, 60, 4)
+        ]
+    Path("grind.src").write_text("\n".join([*lines, "END"]) + "\n")
+    job = make(block(doc))
+    doc.removeObject("RobotPath")
+    path = beltgrinding.import_program(job, "grind.src")
+    plan = beltgrinding.make_plan(job, Rounds=3, Check=False)
+    assert plan.Better, plan.Rates
+    Path("out").mkdir()
+    files, without = beltgrinding.write_plan(plan, "out")
+    assert [f.name for f in files] == ["grind.src"] and not without
+    text = Path("out/grind.src").read_text()
+    unchanged = [l for l in text.splitlines() if "VEL" not in l]
+    assert unchanged == [l for l in lines + ["END"] if "VEL" not in l]
+    again = beltgrinding.import_program(job, "out/grind.src")
+    for one, other in zip(again.Feeds, plan.NewFeeds):
+        assert near(one, other, 1e-4), (one, other)
+    doc.removeObject(again.Name)
+    doc.recompute()
 
-# With a program of another kind there are no passes to lay.
-beltgrinding.import_program(job, "pass.csv")
-try:
-    beltgrinding.make_plan(job, LayPasses=True)
-    raise AssertionError("two paths")
-except InputError as error:
-    assert "one raster path" in str(error), error
-"""
-    )
+    before = Path("out/grind.src").read_bytes()
+    for wrong, words in (
+        (lambda: beltgrinding.write_plan(plan, "out"), "there already"),
+        (lambda: beltgrinding.write_plan(plan, "nowhere"), "no folder"),
+        (lambda: beltgrinding.write_plan(plan, "."), "there already"),
+    ):
+        try:
+            wrong()
+            raise AssertionError(words)
+        except InputError as error:
+            assert words in str(error), error
+    assert Path("out/grind.src").read_bytes() == before
+    Path("grind.src").write_text("\n".join([*lines[:-1], "END"]) + "\n")
+    Path("other").mkdir()
+    try:
+        beltgrinding.write_plan(plan, "other")
+        raise AssertionError("the file is another one")
+    except InputError as error:
+        assert "no longer" in str(error), error
+    assert not list(Path("other").iterdir())
+
+
+@pytest.mark.freecad
+def test_what_cannot_be_planned_is_refused_and_changes_nothing():
+    write_pass()
+    QUICK = raster()
+    doc = FreeCAD.newDocument("life")
+    job = raster_job(doc)
+    for settings, words in (
+        ({"FeedMin": "200 mm/s"}, "feed_min_mm_s"),
+        ({"Keep": json.dumps([{"first_line": 4000}])}, "keep"),
+    ):
+        try:
+            beltgrinding.make_plan(job, **settings, **QUICK)
+            raise AssertionError(words)
+        except InputError as error:
+            assert words in str(error), error
+        assert doc.getObject("Plan") is None
+    plan = beltgrinding.make_plan(job, compute=False)
+    try:
+        beltgrinding.apply_plan(plan)
+        raise AssertionError("nothing is planned")
+    except InputError as error:
+        assert "nothing is planned yet" in str(error)
+    try:
+        beltgrinding.make_plan(job, FeedMin="200 mm/s", **QUICK)
+        raise AssertionError("limits")
+    except InputError as error:
+        assert doc.getObject("Plan") is plan and not plan.Data, "the one that was there stays"
+
+
+@pytest.mark.slow
+@pytest.mark.freecad
+def test_passes_are_laid_and_planned_and_applied_together():
+    write_pass()
+    raster()
+    doc = FreeCAD.newDocument("life")
+    job = raster_job(doc)
+    path = doc.RasterPath
+    path.StepOver = "18 mm"  # so far apart that stripes stay between them
+    doc.recompute()
+    poses = len(path.Poses)
+    only = beltgrinding.make_plan(job, Rounds=3, Check=False).InTolerance
+    plan = beltgrinding.make_plan(job, LayPasses=True, Rounds=3, Check=False)
+    assert plan.InTolerance > only + 10.0, (only, plan.InTolerance)
+    assert path.StepOver.Value == 18.0 and len(path.Poses) == poses and not plan.OutOfDate
+    assert len(plan.NewFeeds) > poses and json.loads(plan.Raster)["step_over_mm"] < 18.0
+    told = plan.InTolerance
+    doc.saveAs("laid.FCStd")
+    FreeCAD.closeDocument("life")
+    doc = FreeCAD.openDocument("laid.FCStd")
+    plan, job, path = doc.Plan, doc.BeltGrindingJob, doc.RasterPath
+    beltgrinding.apply_plan(plan)
+    assert plan.Applied and path.StepOver.Value < 18.0 and list(path.Feeds) == list(plan.NewFeeds)
+    beltgrinding.simulate(job)
+    assert near(beltgrinding.make_deviation(job).InTolerance, told, 1e-6)
+    doc.recompute()
+    assert path.Planned and plan.Applied
+
+    # With a program of another kind there are no passes to lay.
+    beltgrinding.import_program(job, "pass.csv")
+    try:
+        beltgrinding.make_plan(job, LayPasses=True)
+        raise AssertionError("two paths")
+    except InputError as error:
+        assert "one raster path" in str(error), error

@@ -74,6 +74,7 @@ def test_a_position_has_no_force_to_change():
     assert len(asked.influence.sample) > 0 and len(asked.force_influence.sample) == 0
 
 
+@pytest.mark.slow
 def test_forces_with_feeds_bring_more_into_tolerance(job):  # noqa: F811
     feeds = planning.plan(job, {**SETTINGS, "rounds": 8})
     both = planning.plan(job, {**SETTINGS, "rounds": 8, "force_min_N": 5.0, "force_max_N": 60.0})

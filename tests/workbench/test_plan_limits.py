@@ -31,6 +31,7 @@ def share(plan):
     return plan.after.summary["in_tolerance_area_share"]
 
 
+@pytest.mark.slow
 def test_feed_changes_no_faster_than_may_be_along_the_path(job, free):
     first, second, way = pairs(free)
     assert (abs(free.new[first] - free.new[second]) / way).max() > 10.0

@@ -101,6 +101,7 @@ def test_what_is_ground_is_no_datum_and_a_cloud_no_stock(given, tmp_path):
         scan_stock.as_stock(job, tmp_path / "none.ply")
 
 
+@pytest.mark.slow
 def test_each_part_of_a_batch_gets_its_own_program(given, tmp_path, capsys):
     (tmp_path / "job.json").write_text(json.dumps(given))
     scans = [

@@ -55,6 +55,7 @@ def whole(plan, seed, count):
     return np.array(shares)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("part, tolerance, wanted", CASES)
 def test_as_many_drawn_laws_pass_as_are_asked_for(job, part, tolerance, wanted):
     even = {"stock": {"allowance_mm": 0.2, "kind": "allowance"}} if part == "even" else {}

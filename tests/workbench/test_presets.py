@@ -7,13 +7,11 @@ import sys
 import pytest
 from support.freecad import MOD, ROOT
 
-sys.path.insert(0, str(MOD))
-
-from beltgrinding.engine import InputError  # noqa: E402
-from beltgrinding.contact import single_contact as contact  # noqa: E402
-from beltgrinding.presets import library as presets, rubber  # noqa: E402
-from beltgrinding.base import schemas  # noqa: E402
-from beltgrinding.job import load as jobs  # noqa: E402
+from beltgrinding.engine import InputError
+from beltgrinding.contact import single_contact as contact
+from beltgrinding.presets import library as presets, rubber
+from beltgrinding.base import schemas
+from beltgrinding.job import load as jobs
 
 FILES = sorted((ROOT / "Resources" / "presets").glob("*.json"))
 # A robot has one source for all its numbers: tests/workbench/test_robot.py

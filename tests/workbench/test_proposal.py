@@ -2,20 +2,21 @@
 
 import math
 import os
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+import FreeCAD
+import Part
+
+import beltgrinding
+from beltgrinding.engine import InputError, core
+from beltgrinding.job import load as jobs
+from beltgrinding.job.poses import list_poses
+from beltgrinding.raster import proposal, raster_path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
 
-import beltgrinding  # noqa: E402
-from beltgrinding.engine import InputError, core  # noqa: E402
-from beltgrinding.job import load as jobs  # noqa: E402
-from beltgrinding.job.poses import list_poses  # noqa: E402
-from beltgrinding.raster import proposal, raster_path  # noqa: E402
 
 SHARED = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared"))
 PARTS = [("crank_arm.brep", 5), ("pump_cover.brep", 1), ("blade_marine_upper.iges", 1)]
@@ -64,6 +65,7 @@ def ground(design, machine, settings, spacing, stock):
     return summary["in_tolerance_area_share"], summary["deviation_mm"]["mean"]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not SHARED.is_dir(), reason="the shared parts are not there")
 @pytest.mark.parametrize("name, face", PARTS)
 def test_a_proposal_takes_the_allowance_off_and_beats_the_defaults(name, face):
@@ -139,7 +141,12 @@ CURVED = {**PLATEN, "platen": {"layers": [LAYER], "radius_mm": 120.0}}
 
 
 @pytest.mark.parametrize(
-    "machine", [BELT, PLATEN, CURVED], ids=["free belt", "platen", "curved platen"]
+    "machine",
+    [
+        pytest.param(BELT, id="free belt"),
+        pytest.param(PLATEN, id="platen", marks=pytest.mark.slow),
+        pytest.param(CURVED, id="curved platen", marks=pytest.mark.slow),
+    ],
 )
 def test_a_belt_takes_the_allowance_off(machine):
     stock = {"kind": "allowance", "allowance_mm": 0.1}
@@ -162,15 +169,7 @@ def test_a_belt_takes_the_allowance_off(machine):
 def parts(freecad, tmp_path_factory):
     """BREP files: a third of a cylinder of R 30, 60 mm long; a block with a slot 30 mm wide."""
     folder = tmp_path_factory.mktemp("belts")
-    freecad.run(
-        f"""
-import FreeCAD, Part
-V = FreeCAD.Vector
-Part.makeCylinder(30, 60, V(0, 0, 0), V(0, 1, 0), 120).exportBrep("{folder}/third.brep")
-slot = Part.makeBox(120, 30, 10, V(-60, -15, 0))
-Part.makeBox(120, 60, 20, V(-60, -30, -10)).cut(slot).exportBrep("{folder}/slot.brep")
-"""
-    )
+    freecad.call(make_parts, folder)
     return folder
 
 
@@ -206,3 +205,10 @@ def test_a_belt_that_does_not_fit_is_told_with_one_that_does(parts):
     assert note.code == "raster.proposed_narrower", str(note)
     assert 20 <= note.arguments["narrower"] <= 25
     assert proposal.propose(largest(parts / "slot.brep", BELT, bottom))["notes"] == []
+
+
+def make_parts(folder):
+    V = FreeCAD.Vector
+    Part.makeCylinder(30, 60, V(0, 0, 0), V(0, 1, 0), 120).exportBrep(str(folder / "third.brep"))
+    slot = Part.makeBox(120, 30, 10, V(-60, -15, 0))
+    Part.makeBox(120, 60, 20, V(-60, -30, -10)).cut(slot).exportBrep(str(folder / "slot.brep"))

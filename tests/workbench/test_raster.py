@@ -2,24 +2,26 @@
 
 import json
 import math
+import os
 import re
 import subprocess
 import sys
 
 import numpy as np
 import pytest
+import FreeCAD
+
+import beltgrinding
+from beltgrinding import contact
+from beltgrinding.base import frames
+from beltgrinding.cell import tool_path as tool_paths
+from beltgrinding.engine import InputError, core
+from beltgrinding.job import load as jobs, poses, workpiece
+from beltgrinding.programs.program import powers, through_with
+from beltgrinding.programs.registry import read_program
+from beltgrinding.raster import raster_path as raster
+from beltgrinding.simulation import run as runs
 from support.freecad import ROOT, SHARED
-
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
-
-from beltgrinding.engine import InputError, core  # noqa: E402
-from beltgrinding.base import frames  # noqa: E402
-from beltgrinding.job import load as jobs, workpiece, poses  # noqa: E402
-from beltgrinding.simulation import run as runs  # noqa: E402
-from beltgrinding.cell import tool_path as tool_paths  # noqa: E402
-from beltgrinding.raster import raster_path as raster  # noqa: E402
-from beltgrinding.programs.registry import read_program  # noqa: E402
-from beltgrinding.programs.program import powers, through_with  # noqa: E402
 
 LENGTH, WIDTH = 100.0, 60.0  # mm
 WHEEL = {"radius_mm": 40, "width_mm": 16, "crown_radius_mm": 60}
@@ -176,6 +178,7 @@ def _rotation(matrix):
     return frame
 
 
+@pytest.mark.slow
 def test_the_step_over_comes_from_the_contact():
     job = job_of(plate(), belt_machine={"wheel": {"radius_mm": 60, "width_mm": 15}})
     found = raster.raster(job, {**ALONG_X, "step_over_share": 0.5})
@@ -228,6 +231,16 @@ def groove():
     return core.shape_from_mesh(mesh).write_brep()
 
 
+def test_a_law_that_takes_nothing_off_has_no_best_way():
+    brep = groove()
+    law = {"model": "local", "coefficient_mm2_per_N": 1e-6, "pressure_threshold_MPa": 1000.0}
+    job = job_of(brep, design={"brep": brep, "faces": [1]}, law=law)
+    with pytest.raises(InputError, match="takes nothing off") as caught:
+        raster.raster(job, {"along": "auto", "step_over_mm": 8.0})
+    assert caught.value.code == "raster.takes_nothing_off"
+
+
+@pytest.mark.slow
 def test_the_best_way_goes_where_the_wheel_fits_in():
     brep = groove()
     shape = core.Shape.from_brep(brep, "groove")
@@ -268,6 +281,7 @@ def test_the_best_way_of_a_rigid_tool_goes_by_the_stock():
     assert found["along"] != "auto"
 
 
+@pytest.mark.slow
 def test_the_solved_width_is_that_of_the_contact_there():
     """On a cylinder both ways to the width agree; on a part of two curvatures the solved one keeps to the narrow."""
     radius = 50.0
@@ -326,6 +340,7 @@ def command(*arguments):
     )
 
 
+@pytest.mark.slow
 def test_the_command_line_writes_a_program(tmp_path):
     job = {"design": {"brep": plate()}, "belt_machine": {"wheel": WHEEL}}
     (tmp_path / "job.json").write_text(json.dumps(job))
@@ -388,6 +403,7 @@ def test_the_page_has_every_setting_with_its_default():
 BLADE = SHARED / "data" / "cad" / "blade_marine_solid_derived.step"
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not BLADE.exists(), reason=f"no shared data at {SHARED}")
 @pytest.mark.parametrize("along", ["u", "v", "direction"])
 def test_a_real_blade_is_covered(along):
@@ -429,12 +445,6 @@ def test_a_real_blade_is_covered(along):
     assert np.percentile(angles, 90) < 3 and max(angles) < 20 + 2
 
 
-MACRO = """
-import os
-import FreeCAD, Part
-import beltgrinding
-from beltgrinding import InputError
-
 def make(doc):
     part = doc.addObject("Part::Box", "Block")
     part.Length, part.Width, part.Height = 60, 40, 20
@@ -443,106 +453,99 @@ def make(doc):
     beltgrinding.make_stock(job, Allowance="0.2 mm")
     beltgrinding.make_belt_machine(job, WheelRadius=60, WheelWidth="15 mm", Force="30 N")
     return job
-"""
 
 
-def test_a_raster_path_in_the_document(freecad):
-    freecad.run(
-        MACRO
-        + """
-doc = FreeCAD.newDocument("raster")
-doc.UndoMode = 1
-job = make(doc)
-doc.openTransaction("raster")
-path = beltgrinding.make_raster(job, Along="direction", Direction=(1, 0, 0), StepOver="8 mm",
-                               Entry="direct")
-doc.commitTransaction()
-assert path in job.Group and path.PassCount == 5, path.PassCount
-assert abs(path.GroundLength.Value - 300) < 0.1 and abs(path.StepOverUsed.Value - 8) < 1e-6
-assert path.PoseCount == len(path.Poses) == path.Path.Size
-assert abs(path.Poses[2].Base.z - 20) < 1e-9
-
-# It follows its settings, its machine and its part.
-path.StepOver = "10 mm"
-doc.recompute()
-assert path.PassCount == 4
-doc.Block.Width = 60
-doc.recompute()
-assert path.PassCount == 6
-doc.BeltMachine.BaseFromWork = FreeCAD.Placement(FreeCAD.Vector(0, 0, 100), FreeCAD.Rotation())
-doc.recompute()
-assert abs(path.Poses[2].Base.z - 120) < 1e-9
-digest = path.Inputs
-path.Clearance = "40 mm"
-doc.recompute()
-assert path.Inputs != digest and abs(path.Poses[0].Base.z - 160) < 1e-9
-
-# Simulation, contact and export take it like any other path.
-simulation = beltgrinding.simulate(job)
-assert simulation.RemovedVolume.Value > 10 and not simulation.OutOfDate
-beltgrinding.export_job(job, "job.json")
-from beltgrinding import contact
-from beltgrinding.job import load as jobs
-pressed = contact.at_pose(jobs.load("job.json"), 5)
-assert abs(pressed["force"] - 30) < 1
-again = beltgrinding.open_job(FreeCAD.newDocument("again"), "job.json")
-assert len(again.Document.RobotPath.Poses) == path.PoseCount
-path.RunOut = "-2 mm"
-doc.recompute()
-assert simulation.OutOfDate
-
-# An error leaves the last poses and says so; the path recovers.
-before = [tuple(pose.Base) for pose in path.Poses]
-path.Direction = (0, 0, 1)
-doc.recompute()
-assert "Invalid" in path.State and [tuple(pose.Base) for pose in path.Poses] == before
-path.Direction = (0, 1, 0)
-doc.recompute()
-assert "Invalid" not in path.State and [tuple(pose.Base) for pose in path.Poses] != before
-
-doc.saveAs(os.path.abspath("raster.FCStd"))
-poses = [tuple(p.Base) for p in path.Poses]
-FreeCAD.closeDocument("raster")
-doc = FreeCAD.openDocument("raster.FCStd")
-path = doc.RasterPath
-assert type(path.Proxy).__name__ == "RasterPath" and path.PassCount > 0
-assert [tuple(p.Base) for p in path.Poses] == poses
-path.StepOver = "20 mm"
-doc.recompute()
-assert path.PassCount == 3
-"""
+@pytest.mark.freecad
+def test_a_raster_path_in_the_document():
+    doc = FreeCAD.newDocument("raster")
+    doc.UndoMode = 1
+    job = make(doc)
+    doc.openTransaction("raster")
+    path = beltgrinding.make_raster(
+        job, Along="direction", Direction=(1, 0, 0), StepOver="8 mm", Entry="direct"
     )
+    doc.commitTransaction()
+    assert path in job.Group and path.PassCount == 5, path.PassCount
+    assert abs(path.GroundLength.Value - 300) < 0.1 and abs(path.StepOverUsed.Value - 8) < 1e-6
+    assert path.PoseCount == len(path.Poses) == path.Path.Size
+    assert abs(path.Poses[2].Base.z - 20) < 1e-9
+
+    # It follows its settings, its machine and its part.
+    path.StepOver = "10 mm"
+    doc.recompute()
+    assert path.PassCount == 4
+    doc.Block.Width = 60
+    doc.recompute()
+    assert path.PassCount == 6
+    doc.BeltMachine.BaseFromWork = FreeCAD.Placement(FreeCAD.Vector(0, 0, 100), FreeCAD.Rotation())
+    doc.recompute()
+    assert abs(path.Poses[2].Base.z - 120) < 1e-9
+    digest = path.Inputs
+    path.Clearance = "40 mm"
+    doc.recompute()
+    assert path.Inputs != digest and abs(path.Poses[0].Base.z - 160) < 1e-9
+
+    # Simulation, contact and export take it like any other path.
+    simulation = beltgrinding.simulate(job)
+    assert simulation.RemovedVolume.Value > 10 and not simulation.OutOfDate
+    beltgrinding.export_job(job, "job.json")
+    pressed = contact.at_pose(jobs.load("job.json"), 5)
+    assert abs(pressed["force"] - 30) < 1
+    again = beltgrinding.open_job(FreeCAD.newDocument("again"), "job.json")
+    assert len(again.Document.RobotPath.Poses) == path.PoseCount
+    path.RunOut = "-2 mm"
+    doc.recompute()
+    assert simulation.OutOfDate
+
+    # An error leaves the last poses and says so; the path recovers.
+    before = [tuple(pose.Base) for pose in path.Poses]
+    path.Direction = (0, 0, 1)
+    doc.recompute()
+    assert "Invalid" in path.State and [tuple(pose.Base) for pose in path.Poses] == before
+    path.Direction = (0, 1, 0)
+    doc.recompute()
+    assert "Invalid" not in path.State and [tuple(pose.Base) for pose in path.Poses] != before
+
+    doc.saveAs(os.path.abspath("raster.FCStd"))
+    poses = [tuple(p.Base) for p in path.Poses]
+    FreeCAD.closeDocument("raster")
+    doc = FreeCAD.openDocument("raster.FCStd")
+    path = doc.RasterPath
+    assert type(path.Proxy).__name__ == "RasterPath" and path.PassCount > 0
+    assert [tuple(p.Base) for p in path.Poses] == poses
+    path.StepOver = "20 mm"
+    doc.recompute()
+    assert path.PassCount == 3
 
 
-def test_mistakes_leave_the_document_and_undo_is_one_step(freecad):
-    freecad.run(
-        MACRO
-        + """
-doc = FreeCAD.newDocument("mistakes")
-doc.UndoMode = 1
-job = make(doc)
-names = [o.Name for o in doc.Objects]
-for properties in (
-    {"Along": "direction", "Direction": (0, 0, 1)}, {"Along": "w"}, {"StepOverr": 3}, {"MinLength": 500}
-):
-    try:
-        beltgrinding.make_raster(job, **properties)
-        raise SystemExit(f"{properties} was taken")
-    except InputError as error:
-        assert str(error)
+@pytest.mark.freecad
+def test_mistakes_leave_the_document_and_undo_is_one_step():
+    doc = FreeCAD.newDocument("mistakes")
+    doc.UndoMode = 1
+    job = make(doc)
+    names = [o.Name for o in doc.Objects]
+    for properties in (
+        {"Along": "direction", "Direction": (0, 0, 1)},
+        {"Along": "w"},
+        {"StepOverr": 3},
+        {"MinLength": 500},
+    ):
+        try:
+            beltgrinding.make_raster(job, **properties)
+            raise SystemExit(f"{properties} was taken")
+        except InputError as error:
+            assert str(error)
+        assert [o.Name for o in doc.Objects] == names
+    doc.openTransaction("raster")
+    beltgrinding.make_raster(job, ["Face6"], StepOver=10)
+    doc.commitTransaction()
+    doc.undo()
     assert [o.Name for o in doc.Objects] == names
-doc.openTransaction("raster")
-beltgrinding.make_raster(job, ["Face6"], StepOver=10)
-doc.commitTransaction()
-doc.undo()
-assert [o.Name for o in doc.Objects] == names
-doc.redo()
-assert doc.RasterPath.PassCount > 0 and doc.RasterPath in job.Group
-other = beltgrinding.make_job(doc.Block, ["Face1"])
-try:
-    beltgrinding.make_raster(other)
-    raise SystemExit("no machine was missed")
-except InputError as error:
-    assert "belt machine" in str(error)
-"""
-    )
+    doc.redo()
+    assert doc.RasterPath.PassCount > 0 and doc.RasterPath in job.Group
+    other = beltgrinding.make_job(doc.Block, ["Face1"])
+    try:
+        beltgrinding.make_raster(other)
+        raise SystemExit("no machine was missed")
+    except InputError as error:
+        assert "belt machine" in str(error)

@@ -1,16 +1,19 @@
 """Raster paths for a free belt and a platen: as wide as their contact, where they fit."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
+import FreeCAD
+import Part
+from test_raster import plate
 
-from beltgrinding.engine import core
+from beltgrinding.engine import InputError, core
 from beltgrinding.job import load, poses
 from beltgrinding.raster import footprint, raster_path, tool
 from beltgrinding.simulation import run as runs
 from test_clearing import floor_of, parts  # noqa: F401
-from test_raster import plate
 
 X = {"along": "direction", "direction": [1, 0, 0], "entry": "direct"}
 LAYER = {"thickness_mm": 5, "youngs_modulus_MPa": 2, "poissons_ratio": 0.4}
@@ -33,15 +36,7 @@ def job_of(design, kind="free_belt", run=(), **parts):
 def bent(freecad, tmp_path_factory):
     """The design of 100 x 60 mm of a cylinder's side, R 80 about y, that looks up."""
     file = tmp_path_factory.mktemp("bent") / "bent.brep"
-    freecad.run(
-        f"""
-import math, FreeCAD, Part
-V = FreeCAD.Vector
-half = math.degrees(50 / 80)
-arc = Part.makeCircle(80, V(0, 0, -80), V(0, -1, 0), 90 - half, 90 + half)
-arc.extrude(V(0, 60, 0)).exportBrep({str(file)!r})
-"""
-    )
+    freecad.call(make_bent, file)
     return {"file": str(file)}
 
 
@@ -148,14 +143,22 @@ def test_a_contact_that_goes_on_over_the_faces_border_is_told():
 
 
 def test_the_core_refuses_what_is_no_belt():
+    belt = load.typed(job_of({"brep": plate()})).belt_machine
+    narrow = replace(belt, free_run=replace(belt.free_run, width_mm=-1.0))
     with pytest.raises(ValueError, match="width"):
-        core.run_fit({"kind": "free_belt", "width": -1.0}, 10.0, np.eye(4)[None], np.zeros((1, 3)))
+        core.run_fit(narrow, 10.0, np.eye(4)[None], np.zeros((1, 3)))
     with pytest.raises(ValueError, match="room behind"):
-        core.run_fit({"kind": "free_belt"}, -1.0, np.eye(4)[None], np.zeros((1, 3)))
+        core.run_fit(belt, -1.0, np.eye(4)[None], np.zeros((1, 3)))
     with pytest.raises(ValueError):
-        core.press_belt({"kind": "free_belt"}, math.nan, 0.0, force=10.0)
+        core.press_belt(belt, math.nan, 0.0, force=10.0)
     with pytest.raises(ValueError):
-        core.press_belt({"kind": "free_belt"}, 0.0, 0.0)
+        core.press_belt(belt, 0.0, 0.0)
+    with pytest.raises(InputError) as raised:
+        core.press_belt(replace(belt, kind="belt"), 0.0, 0.0, force=10.0)
+    assert raised.value.code == "call.belt_machine"
+    with pytest.raises(InputError) as raised:
+        core.press_belt(replace(belt, free_run=replace(belt.free_run, width_mm="wide")), 0, 0, 0, 1)
+    assert raised.value.code == "call.wrong_type" and "width_mm" in str(raised.value)
 
 
 def test_contacts_that_have_not_converged_do_not_count_and_that_is_told(bent, monkeypatch):
@@ -174,3 +177,10 @@ def test_contacts_that_have_not_converged_do_not_count_and_that_is_told(bent, mo
     assert not any(one.code == "raster.belt_not_solved" for one in solved["warnings"])
     assert any(one.code == "raster.belt_not_solved" for one in unsolved["warnings"])
     assert unsolved["contact_width_mm"] == unsolved["footprint"]["plain_mm"]
+
+
+def make_bent(file):
+    V = FreeCAD.Vector
+    half = math.degrees(50 / 80)
+    arc = Part.makeCircle(80, V(0, 0, -80), V(0, -1, 0), 90 - half, 90 + half)
+    arc.extrude(V(0, 60, 0)).exportBrep(str(file))

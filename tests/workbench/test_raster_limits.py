@@ -2,19 +2,16 @@
 
 import json
 import math
-import sys
 
 import numpy as np
 import pytest
-from support.freecad import ROOT, SHARED
+from support.freecad import SHARED
 
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
-
-from beltgrinding.engine import InputError, core  # noqa: E402
-from beltgrinding.job import load as jobs, poses  # noqa: E402
-from beltgrinding.raster import passes, path_check, raster_path, turn_limits  # noqa: E402
-from beltgrinding.raster.footprint import plane_extents  # noqa: E402
-from beltgrinding.simulation import run as runs  # noqa: E402
+from beltgrinding.engine import InputError, core
+from beltgrinding.job import engine_input, load as jobs, poses
+from beltgrinding.raster import passes, path_check, raster_path, turn_limits
+from beltgrinding.raster.footprint import plane_extents
+from beltgrinding.simulation import run as runs
 
 SETTINGS = raster_path.validate({})
 X = {"along": "direction", "direction": [1, 0, 0], "spacing": "lines", "step_over_mm": 10}
@@ -183,7 +180,7 @@ def test_next_to_nothing_is_removed_by_plunging():
 def test_the_force_grows_over_the_border():
     job = job_of(holed(0.0))
     laid = raster_path.raster(job, X)
-    length = plane_extents(job, raster_path.validate(X))[0]
+    length = plane_extents(job, engine_input.of(job), raster_path.validate(X))[0]
     assert 3 < length < 20
     for one in laid["passes"]:
         on = slice(one["first"], one["last"] + 1)
@@ -282,6 +279,7 @@ def test_mistakes_are_named(settings):
 CRANK = SHARED / "data" / "cad" / "crank_arm.brep"
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not CRANK.exists(), reason=f"no shared data at {SHARED}")
 def test_a_real_part_with_holes_has_no_violent_motion():
     job = job_of("", design={"file": str(CRANK), "faces": [5]})

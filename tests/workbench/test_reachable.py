@@ -1,9 +1,12 @@
 """Where the wheel gets to: all faces of the part may stand in its way."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
+import FreeCAD
+import Part
 from PIL import Image
 
 from beltgrinding import cli
@@ -17,17 +20,7 @@ from support.freecad import SHARED
 @pytest.fixture
 def parts(freecad, tmp_path):
     """BREP files: a plate of 80 x 60 mm with a wall of 30 mm on its edge; a bore of 30 mm in a block."""
-    freecad.run(
-        f"""
-import FreeCAD, Part
-from pathlib import Path
-folder = Path({str(tmp_path)!r})
-V = FreeCAD.Vector
-Part.makeBox(80, 60, 10).fuse(Part.makeBox(80, 10, 40, V(0, 60, 0))).removeSplitter().exportBrep(
-    str(folder / "wall.brep"))
-Part.makeBox(60, 60, 80, V(-30, -30, 0)).cut(Part.makeCylinder(15, 80)).exportBrep(str(folder / "bore.brep"))
-"""
-    )
+    freecad.call(make_parts, tmp_path)
     return tmp_path
 
 
@@ -81,17 +74,7 @@ def test_a_bore_takes_a_wheel_that_is_smaller_than_it(parts):
 
 
 def test_what_stands_over_the_axis_is_in_the_way_too(freecad, tmp_path):
-    freecad.run(
-        f"""
-import FreeCAD, Part
-from pathlib import Path
-V = FreeCAD.Vector
-for height in (30, 45):
-    floor, lid = Part.makeBox(120, 100, 5, V(0, 0, -5)), Part.makeBox(120, 100, 5, V(0, 0, height))
-    post = Part.makeBox(2, 100, height, V(118, 0, 0))
-    floor.fuse(lid).fuse(post).removeSplitter().exportBrep(str(Path({str(tmp_path)!r}) / f"lid{{height}}.brep"))
-"""
-    )
+    freecad.call(make_lids, tmp_path)
     for height, share in ((30, 0.0), (45, 0.97)):
         job = job_of(tmp_path / f"lid{height}.brep")
         shape = workpiece.read_design(job["design"])
@@ -118,6 +101,7 @@ def test_a_raster_tells_it(parts):
     assert not [fact for fact in free["warnings"] if fact.code.startswith("raster.not_reach")]
 
 
+@pytest.mark.slow
 def test_the_picture_shows_passes_and_what_is_left_out(parts, tmp_path, capsys):
     shape = workpiece.read_design(job_of(parts / "wall.brep")["design"])
     floor = face_with(shape, 80 * 60) + 1
@@ -146,6 +130,7 @@ def test_the_picture_shows_passes_and_what_is_left_out(parts, tmp_path, capsys):
     capsys.readouterr()
 
 
+@pytest.mark.slow
 def test_a_strip_along_a_border_gets_its_passes():
     """A concave fillet of the crank: the wheel gets to strips along its borders only, narrower than a pass."""
     file = SHARED / "data" / "cad" / "crank_arm.brep"
@@ -166,3 +151,26 @@ def test_a_strip_along_a_border_gets_its_passes():
     reached = seen["areas"][seen["fits"]].sum()
     ground = seen["areas"][seen["fits"] & (seen["state"] == reachable.GROUND)].sum()
     assert ground > 0.8 * reached, (ground, reached)
+
+
+def make_parts(tmp_path):
+    folder = Path(str(tmp_path))
+    V = FreeCAD.Vector
+    Part.makeBox(80, 60, 10).fuse(
+        Part.makeBox(80, 10, 40, V(0, 60, 0))
+    ).removeSplitter().exportBrep(str(folder / "wall.brep"))
+    Part.makeBox(60, 60, 80, V(-30, -30, 0)).cut(Part.makeCylinder(15, 80)).exportBrep(
+        str(folder / "bore.brep")
+    )
+
+
+def make_lids(tmp_path):
+    V = FreeCAD.Vector
+    for height in (30, 45):
+        floor, lid = Part.makeBox(120, 100, 5, V(0, 0, -5)), Part.makeBox(
+            120, 100, 5, V(0, 0, height)
+        )
+        post = Part.makeBox(2, 100, height, V(118, 0, 0))
+        floor.fuse(lid).fuse(post).removeSplitter().exportBrep(
+            str(Path(str(tmp_path)) / f"lid{height}.brep")
+        )

@@ -17,15 +17,12 @@ import numpy as np
 import pytest
 from PIL import Image
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
-
-import beltgrinding  # noqa: E402
-from beltgrinding.base import messages  # noqa: E402
-from beltgrinding.engine import InputError, core  # noqa: E402
-from beltgrinding.job import inputs  # noqa: E402
-from beltgrinding.inspection import picture  # noqa: E402
-from beltgrinding.simulation import result as results  # noqa: E402
+import beltgrinding
+from beltgrinding.base import messages
+from beltgrinding.engine import InputError, core
+from beltgrinding.job import inputs
+from beltgrinding.inspection import picture
+from beltgrinding.simulation import result as results
 from beltgrinding.reporting import (
     charts,
     convergence_section as converged,
@@ -33,9 +30,11 @@ from beltgrinding.reporting import (
     findings,
     language,
     markup,
-)  # noqa: E402
-from test_job import plate_job  # noqa: E402
-from support.results import unseal  # noqa: E402
+)
+from test_job import plate_job
+from support.results import unseal
+
+ROOT = Path(__file__).resolve().parents[2]
 
 NASTY = 'Blade <img src=x onerror="alert(1)"> & "co" \u0007'
 
@@ -313,7 +312,7 @@ def spoken():
 
 
 def test_every_text_is_there_in_german():
-    german = language._texts("de")
+    german = messages.of_report("de")
     for kind in core.event_kinds():
         assert messages.kind_text(kind["code"]) in german and kind["advice"] in german, kind
     assert set(messages.BELT_TITLES) <= {kind["code"] for kind in core.event_kinds()}
@@ -348,6 +347,7 @@ def test_the_time_series_keeps_the_peaks():
     assert bins["peak_pressure"].index(7.0) == 24
 
 
+@pytest.mark.slow
 def test_command_line_writes_html_and_pdf(ground, tmp_path):
     pytest.importorskip("weasyprint")
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "Mod" / "BeltGrinding")}

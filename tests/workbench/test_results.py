@@ -5,24 +5,20 @@ import hashlib
 import json
 import os
 import shutil
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-for folder in (ROOT / "Mod" / "BeltGrinding", ROOT / "tests" / "workbench"):
-    if str(folder) not in sys.path:
-        sys.path.insert(0, str(folder))
+import beltgrinding
+from beltgrinding.base import files, folders
+from beltgrinding.cli import main
+from beltgrinding.engine import InputError, core
+from beltgrinding.simulation.result import Result
+from support.results import unseal
+from test_job import plate_job
 
-import beltgrinding  # noqa: E402
-from beltgrinding.base import files, folders  # noqa: E402
-from beltgrinding.cli import main  # noqa: E402
-from beltgrinding.engine import InputError, core  # noqa: E402
-from beltgrinding.simulation.result import Result  # noqa: E402
-from support.results import unseal  # noqa: E402
-from test_job import plate_job  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.fixture(scope="module")

@@ -12,17 +12,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
+import beltgrinding
+from beltgrinding.engine import InputError, core
+from beltgrinding.base import frames
+from beltgrinding.job import poses
+from beltgrinding.presets import library as presets, robot_model, robot as robots
+from beltgrinding.cell import reach
+from beltgrinding.job import load as jobs
+from beltgrinding.cell import tool_path as tool_paths
 
-import beltgrinding  # noqa: E402
-from beltgrinding.engine import InputError, core  # noqa: E402
-from beltgrinding.base import frames  # noqa: E402
-from beltgrinding.job import poses  # noqa: E402
-from beltgrinding.presets import library as presets, robot_model, robot as robots  # noqa: E402
-from beltgrinding.cell import reach  # noqa: E402
-from beltgrinding.job import load as jobs  # noqa: E402
-from beltgrinding.cell import tool_path as tool_paths  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 SHARED = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared"))
 FILE = ROOT / "Resources" / "presets" / "robots.json"
@@ -436,6 +435,7 @@ def test_unreached_poses_are_empty_in_the_table(tmp_path):
 CRS = SHARED / "data" / "programs" / "same_path_crs_part5" / "crs_part5.src"
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not CRS.is_file(), reason=f"no shared data at {SHARED}")
 def test_a_real_program_of_423_targets_beside_a_large_robot():
     """A place for the robot beside the part, found by trying, and one that is 500 mm higher."""

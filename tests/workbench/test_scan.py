@@ -3,25 +3,22 @@
 import json
 import math
 import os
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 from support.freecad import ROOT
 
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
-
-import beltgrinding  # noqa: E402
-from beltgrinding.engine import InputError, core  # noqa: E402
+import beltgrinding
+from beltgrinding.engine import InputError, core
 from beltgrinding.scan import (
     comparison as scan,
     file as scan_file,
     start as scan_start,
-)  # noqa: E402
-from beltgrinding.simulation.result import Result  # noqa: E402
-from test_ground_mesh import block_job  # noqa: E402
-from test_job import cli  # noqa: E402
+)
+from beltgrinding.simulation.result import Result
+from test_ground_mesh import block_job
+from test_job import cli
 
 SHARED = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared"))
 NOISE = 0.01  # mm, standard deviation of a synthetic scan's points
@@ -219,6 +216,7 @@ def wedge(count, seed):
     return np.concatenate(points), np.concatenate(normals)
 
 
+@pytest.mark.slow
 def test_principal_axes_find_any_attitude():
     points, normals = wedge(40_000, 1)
     surface = {"points": points, "normals": normals, "spacing": 0.7}
@@ -311,6 +309,7 @@ def test_wrong_units_and_places_are_told(result, cloud):
         scan.align(scan_file.Scan(cloud), surface, 2 * np.eye(4))
 
 
+@pytest.mark.slow
 def test_the_real_scan_finds_the_same_place_from_different_starts():
     folder = SHARED / "data" / "mesh"
     if not folder.is_dir():

@@ -66,6 +66,7 @@ def test_a_wrong_valley_is_told_of():
     assert aligned(points, normals, np.eye(4))["rms_mm"] < 0.012
 
 
+@pytest.mark.slow
 def test_a_residual_of_many_tolerances_is_told(result, cloud, tmp_path):  # noqa: F811
     path = tmp_path / "scan.xyz"
     random = np.random.default_rng(2)

@@ -12,12 +12,10 @@ import numpy as np
 import pytest
 from support.freecad import ROOT
 
-sys.path.insert(0, str(ROOT / "Mod" / "BeltGrinding"))
-
-import beltgrinding  # noqa: E402
-from beltgrinding.engine import InputError, core  # noqa: E402
-from beltgrinding.inspection import section, section_plot  # noqa: E402
-from test_job import plate_job  # noqa: E402
+import beltgrinding
+from beltgrinding.engine import InputError, core
+from beltgrinding.inspection import section, section_plot
+from test_job import plate_job
 
 SVG = "{http://www.w3.org/2000/svg}"
 

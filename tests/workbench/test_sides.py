@@ -2,16 +2,16 @@
 
 import numpy as np
 import pytest
+import FreeCAD
+import Part
 
-from beltgrinding.engine import InputError, core
-from beltgrinding.job import load, workpiece
-
-# A block of 60 x 40 x 20 mm in six faces that share no edge, Face2 and Face6 (its top) inside out.
-LOOSE = """
-import FreeCAD, Part
 import beltgrinding
+from beltgrinding.engine import InputError, core
+from beltgrinding.job import workpiece
 from beltgrinding.objects import sides
 
+
+# A block of 60 x 40 x 20 mm in six faces that share no edge, Face2 and Face6 (its top) inside out.
 def loose_block(doc):
     faces = [face.copy() for face in Part.makeBox(60, 40, 20).Faces]
     faces = [face.reversed() if i in (1, 5) else face for i, face in enumerate(faces)]
@@ -19,25 +19,20 @@ def loose_block(doc):
     part.Shape = Part.Compound(faces)
     return part
 
+
 def job_of(part):
     job = beltgrinding.make_job(part, ["Face6"], Spacing="2 mm")
     beltgrinding.make_stock(job, Allowance="0.2 mm")
     beltgrinding.make_belt_machine(job, WheelRadius=60, WheelWidth="15 mm", Force="30 N")
     beltgrinding.make_raster(job)
     return job
-"""
 
 
 @pytest.fixture
 def brep(freecad, tmp_path):
     """The text of the loose block."""
     path = tmp_path / "loose.brep"
-    freecad.run(
-        LOOSE
-        + f"""
-loose_block(FreeCAD.newDocument("loose")).Shape.exportBrep({str(path)!r})
-"""
-    )
+    freecad.call(make_brep, path)
     return path
 
 
@@ -67,29 +62,32 @@ def test_a_unit_is_applied_to_every_kind_of_file(brep):
     assert workpiece.read_design(text).face_area(5) == pytest.approx(24.0)
 
 
-def test_in_a_document_they_are_flipped_per_face(freecad):
-    freecad.run(
-        LOOSE
-        + """
-doc = FreeCAD.newDocument("sides")
-part = loose_block(doc)
-job = job_of(part)
-doc.recompute()
-
-def side():
+@pytest.mark.slow
+@pytest.mark.freecad
+def test_in_a_document_they_are_flipped_per_face():
+    doc = FreeCAD.newDocument("sides")
+    part = loose_block(doc)
+    job = job_of(part)
     doc.recompute()
-    return doc.RasterPath.Path.Commands[-1].Placement.Base.z > 20  # it retracts away from the face
 
-assert sides.loose_faces(part.Shape) == [1, 2, 3, 4, 5, 6]
-assert [fact.code for fact in sides.notes(job)] == ["brep.turned"]
-assert side()
-digest = doc.RasterPath.Inputs
-job.FlipFaces = [(part, ("Face6",))]
-assert not side() and doc.RasterPath.Inputs != digest
-assert [fact.code for fact in sides.notes(job)] == ["brep.turned", "brep.flipped_inwards"]
-job.FlipFaces = []
-assert side() and doc.RasterPath.Inputs == digest
-job.FlipNormals = True
-assert not side()
-"""
-    )
+    def side():
+        doc.recompute()
+        return (
+            doc.RasterPath.Path.Commands[-1].Placement.Base.z > 20
+        )  # it retracts away from the face
+
+    assert sides.loose_faces(part.Shape) == [1, 2, 3, 4, 5, 6]
+    assert [fact.code for fact in sides.notes(job)] == ["brep.turned"]
+    assert side()
+    digest = doc.RasterPath.Inputs
+    job.FlipFaces = [(part, ("Face6",))]
+    assert not side() and doc.RasterPath.Inputs != digest
+    assert [fact.code for fact in sides.notes(job)] == ["brep.turned", "brep.flipped_inwards"]
+    job.FlipFaces = []
+    assert side() and doc.RasterPath.Inputs == digest
+    job.FlipNormals = True
+    assert not side()
+
+
+def make_brep(path):
+    loose_block(FreeCAD.newDocument("loose")).Shape.exportBrep(str(path))

@@ -19,7 +19,8 @@ from beltgrinding import cli
 from beltgrinding.engine import Cancelled, InputError, core
 from beltgrinding.job import load as jobs
 from beltgrinding.reporting.language import Language
-from beltgrinding.studies import casting, cluster as clusters, sorting, sorting_report
+from beltgrinding.studies import casting, sorting, sorting_report
+from beltgrinding.studies.delivery import Delivery
 from support.workers import ByHand, worker_processes
 from test_plan_stock import given, ply, raw  # noqa: F401
 from test_scan import pytestmark  # noqa: F401
@@ -59,9 +60,9 @@ def test_each_part_is_sorted_with_its_reason(batch):
     folder, found = batch
     rows = {row["part"]: row for row in found.parts}
     assert {name: row["sorted"] for name, row in rows.items()} == {
-        "deep": sorting.SCRAP,
-        "even": sorting.PLANNED,
-        "thick": sorting.SCRAP,
+        "deep": casting.SCRAP,
+        "even": casting.PLANNED,
+        "thick": casting.SCRAP,
     }
     even, thick, deep = rows["even"], rows["thick"], rows["deep"]
     assert even["in_share"] < 0.9 <= even["planned_in_share"]
@@ -85,7 +86,7 @@ def test_the_plan_that_is_told_is_the_one_that_grinds_it_so(batch):
 def test_a_part_passes_where_the_program_is_good_enough(coarse, scans):
     options = {"aligned": True}
     found = sorting.sort(coarse, [scans / "even.ply"], None, QUICK, 0.2, options, workers=0)
-    assert found.parts[0]["sorted"] == sorting.PASSES and found.parts[0]["planned_in_share"] is None
+    assert found.parts[0]["sorted"] == casting.PASSES and found.parts[0]["planned_in_share"] is None
 
 
 def test_the_report_names_all_in_both_languages(batch, coarse):
@@ -96,11 +97,10 @@ def test_the_report_names_all_in_both_languages(batch, coarse):
     german = sorting_report.document(found, coarse, 0.9, Language("de"))
     for text in ("besteht mit diesem Plan", "Ausschuss", "das Schleifen trägt nichts auf"):
         assert text in german
-    assert sorting_report.counts(found)[sorting.SCRAP] == 2
+    assert sorting_report.counts(found)[casting.SCRAP] == 2
 
 
 def test_the_command_sorts_on_processes(coarse, scans, tmp_path, capsys):
-    pytest.importorskip("distributed")
     job = tmp_path / "job.json"
     job.write_text(json.dumps(coarse))
     parts = [str(scans / "deep.ply"), str(scans / "even.ply")]
@@ -141,6 +141,7 @@ def again(coarse, scans, folder, share=SHARE, **more):
     return sorting.sort(coarse, scans, folder, QUICK, share, ALIGNED, workers=0, **more)
 
 
+@pytest.mark.slow
 def test_a_part_that_is_there_is_not_sorted_again(batch, coarse, scans, copied, sorted_now):
     found = again(coarse, [scans], copied)
     assert found.reused == 3 and not sorted_now
@@ -164,7 +165,7 @@ def test_what_cannot_be_judged_is_tried_again(coarse, tmp_path, sorted_now):
     scan.write_text("no mesh")
     for _ in range(2):
         found = again(coarse, [scan], tmp_path / "out")
-        assert found.parts[0]["sorted"] == sorting.UNKNOWN and found.reused == 0
+        assert found.parts[0]["sorted"] == casting.UNKNOWN and found.reused == 0
     assert sorted_now == ["torn", "torn"]
 
 
@@ -173,6 +174,7 @@ def test_a_scan_called_as_what_the_folder_holds_has_another_name(scans):
     assert [name for name, _ in named] == ["kept-2", "slurm-2", "other"]
 
 
+@pytest.mark.slow
 def test_a_cancelled_batch_goes_on(coarse, scans, tmp_path, batch, sorted_now):
     context = core.RunContext()
     with pytest.raises(Cancelled):
@@ -182,8 +184,8 @@ def test_a_cancelled_batch_goes_on(coarse, scans, tmp_path, batch, sorted_now):
     assert (tmp_path / sorting.TABLE).read_bytes() == (batch[0] / sorting.TABLE).read_bytes()
 
 
+@pytest.mark.slow
 def test_workers_that_are_killed_change_no_bit_of_the_table(coarse, scans, tmp_path, batch):
-    pytest.importorskip("distributed")
     killed, over = [], threading.Event()
 
     def kill():
@@ -206,6 +208,7 @@ def test_workers_that_are_killed_change_no_bit_of_the_table(coarse, scans, tmp_p
         assert made == (batch[0] / "even" / name).read_bytes(), name
 
 
+@pytest.mark.slow
 def test_a_scheduler_that_is_there_sorts(coarse, scans, tmp_path, batch):
     pytest.importorskip("distributed")
     cluster = ByHand(tmp_path / "elsewhere")
@@ -219,6 +222,7 @@ def test_a_scheduler_that_is_there_sorts(coarse, scans, tmp_path, batch):
             SHARE,
             ALIGNED,
             scheduler=cluster.address,
+            tls=cluster.key,
         )
     finally:
         cluster.stop()
@@ -235,11 +239,11 @@ def test_a_worker_refuses_what_it_does_not_see(coarse, scans, tmp_path):
     assert sorting.in_worker(older) == {"versions": core.versions()}
     scan.write_bytes(b"another")
     assert sorting.in_worker(task) == {"unseen": str(scan)}
-    session = clusters._Session(None, None, None, ([], [], {}), (None, None), None, None, None)
     with pytest.raises(InputError, match="does not see .*even.ply as it is here"):
-        session._answered(task, {"unseen": str(scan)}, "tcp://there")
+        Delivery(None, None).answered(task, {"unseen": str(scan)}, "tls://there")
 
 
+@pytest.mark.slow
 def test_an_array_of_slurm_jobs_sorts_and_the_next_command_collects(
     coarse, scans, tmp_path, batch, capsys, monkeypatch
 ):
@@ -282,4 +286,4 @@ def test_mistakes_are_told(coarse, tmp_path):
             sorting.sort(coarse, *arguments)
         assert error.value.code == code
     row = sorting.sort(coarse, [tmp_path / "none.ply"], workers=0).parts[0]
-    assert row["sorted"] == sorting.UNKNOWN and "none.ply" in row["reason"]
+    assert row["sorted"] == casting.UNKNOWN and "none.ply" in row["reason"]

@@ -2,8 +2,10 @@
 
 import json
 import math
+from pathlib import Path
 
 import pytest
+import Part
 
 from beltgrinding.engine import InputError, core
 from beltgrinding.job import load, spacing, workpiece
@@ -14,17 +16,7 @@ from beltgrinding.simulation.convergence import scaled
 @pytest.fixture
 def parts(freecad, tmp_path):
     """BREP files: a block of 60 x 40 x 20 mm, rods of 5 and 0.05 mm, a sheet with a strip."""
-    freecad.run(
-        f"""
-import Part
-from pathlib import Path
-folder = Path({str(tmp_path)!r})
-Part.makeBox(60, 40, 20).exportBrep(str(folder / "block.brep"))
-Part.makeCylinder(2.5, 60).exportBrep(str(folder / "rod.brep"))
-Part.makeCylinder(0.025, 0.6).exportBrep(str(folder / "wire.brep"))
-Part.makeBox(60, 0.8, 20).exportBrep(str(folder / "strip.brep"))
-"""
-    )
+    freecad.call(make_parts, tmp_path)
     return tmp_path
 
 
@@ -189,3 +181,11 @@ def test_no_contact_on_a_plane_is_larger_than_is_thought(parts, radius, width):
         if contact is not None:
             found.append(max(contact) / max(2.0 * radius, width))
     assert found and 0.05 < max(found) <= spacing.MOST_ON_PLANE, found
+
+
+def make_parts(tmp_path):
+    folder = Path(str(tmp_path))
+    Part.makeBox(60, 40, 20).exportBrep(str(folder / "block.brep"))
+    Part.makeCylinder(2.5, 60).exportBrep(str(folder / "rod.brep"))
+    Part.makeCylinder(0.025, 0.6).exportBrep(str(folder / "wire.brep"))
+    Part.makeBox(60, 0.8, 20).exportBrep(str(folder / "strip.brep"))

@@ -497,12 +497,12 @@ def test_ctrl_c_keeps_what_is_finished_and_leaves_no_process(tmp_path, workers):
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does
     _, told = process.communicate(timeout=60)
     assert process.returncode == 130, told
-    lines = told.strip().splitlines()
-    assert (
-        "runs are finished and kept in" in told and "interrupted" in lines[-1] and len(lines) == 2
-    ), told
     finished = len(run_files(out))
     assert 3 <= finished < 200
+    assert told.startswith(
+        f"beltgrind: interrupted; {finished} of 200 runs are finished and kept in"
+    )
+    assert len(told.splitlines()) == 1, told
     end = time.monotonic() + 20
     while any(alive(pid) for pid in children) and time.monotonic() < end:
         time.sleep(0.1)
@@ -568,6 +568,7 @@ echo "Submitted batch job 4711"
 """
 
 
+@pytest.mark.slow
 def test_an_array_makes_all_runs_and_the_next_study_collects_them(
     study_file, tmp_path, monkeypatch, capsys, made
 ):
@@ -629,12 +630,16 @@ def test_packages_are_loaded_only_when_a_study_runs():
 @pytest.mark.parametrize(
     "module, package, options",
     [
-        ("openturns", "python3-openturns", {"workers": 0, "given": {"method": "sobol", "runs": 4}}),
-        ("distributed", "python3-distributed", {"workers": 2, "given": {"method": "grid"}}),
+        ("openturns", "python3-openturns", {"workers": 0}),
+        ("distributed", "python3-distributed", {"scheduler": "tcp://127.0.0.1:1", "tls": False}),
     ],
 )
 def test_a_missing_package_is_named(tmp_path, monkeypatch, module, package, options):
+    (tmp_path / f"{module}.py").write_text("raise ImportError('it is not there')\n")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     monkeypatch.setitem(sys.modules, module, None)
-    given = {**study_of(), "design": options["given"]}
+    given = {**study_of(), "design": {"method": "sobol", "runs": 4}}
+    if module != "openturns":
+        given["design"] = {"method": "grid"}
     with pytest.raises(InputError, match=f"Debian: {package}"):
-        making.study(given, tmp_path, workers=options["workers"])
+        making.study(given, tmp_path / "out", **options)

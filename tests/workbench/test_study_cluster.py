@@ -1,4 +1,4 @@
-"""Studies on Dask: workers that are killed, a scheduler started by hand elsewhere, one that restarts, files that are sent."""
+"""Studies on other processes: workers that are killed, a scheduler started by hand elsewhere, one that restarts, files that are sent."""
 
 import json
 import os
@@ -17,8 +17,9 @@ import pytest
 from beltgrinding import cli
 from beltgrinding.engine import Cancelled, InputError, core
 from beltgrinding.studies import cluster, clusters, making, one, store, table
+from beltgrinding.studies.delivery import Delivery
 from support.freecad import MOD
-from support.workers import ByHand, alive, local_clusters, worker_processes
+from support.workers import ByHand, alive, worker_processes
 from test_study import program_job, quick_job, study_of
 
 RUNS = 24
@@ -62,6 +63,7 @@ def serial(tmp_path_factory):
     return (folder / table.FILE).read_bytes()
 
 
+@pytest.mark.slow
 def test_workers_that_are_killed_change_no_bit_of_the_table(tmp_path, serial):
     """By what is done, not by the clock: runs take what the machine takes."""
     dice, killed = random.Random(1), []
@@ -79,6 +81,7 @@ def test_workers_that_are_killed_change_no_bit_of_the_table(tmp_path, serial):
     assert not worker_processes(os.getpid())
 
 
+@pytest.mark.slow
 def test_a_cancelled_study_ends_its_workers_and_goes_on(tmp_path, serial):
     context = core.RunContext()
 
@@ -95,30 +98,35 @@ def test_a_cancelled_study_ends_its_workers_and_goes_on(tmp_path, serial):
     assert (tmp_path / table.FILE).read_bytes() == serial
 
 
-def test_a_local_cluster_that_dies_is_started_again(tmp_path, serial):
+@pytest.mark.slow
+def test_workers_that_all_die_at_once_are_started_again(tmp_path, serial):
     died = []
 
     def told(progress):
         if progress.done >= 5 and not died:
-            died.extend(local_clusters(os.getpid()))
-            os.killpg(died[0], signal.SIGKILL)
+            died.extend(worker_processes(os.getpid()))
+            for pid in died:
+                os.kill(pid, signal.SIGKILL)
 
     making.study(many(), tmp_path, workers=2, told=told)
     assert died and (tmp_path / table.FILE).read_bytes() == serial
 
 
-def test_a_local_cluster_that_is_killed_as_it_starts_is_started_again(tmp_path, serial):
-    killed = []
+@pytest.mark.slow
+def test_workers_that_are_killed_as_they_start_are_started_again(tmp_path, serial):
+    prepared, killed = making.prepare(making.validate(many())), []
 
     def kill():
-        while not killed:
-            killed.extend(local_clusters(os.getpid())[:1])
+        while len(killed) < 4:
+            for pid in worker_processes(os.getpid()):
+                if pid not in killed:
+                    killed.append(pid)
+                    os.kill(pid, signal.SIGKILL)
             time.sleep(0.02)
-        os.killpg(killed[0], signal.SIGKILL)
 
     killer = threading.Thread(target=kill, daemon=True)
     killer.start()
-    making.study(many(), tmp_path, workers=2)
+    making.run(prepared, tmp_path, workers=2)
     killer.join()
     assert killed and (tmp_path / table.FILE).read_bytes() == serial
 
@@ -133,12 +141,14 @@ def by_hand(tmp_path):
     made.stop()
 
 
+@pytest.mark.slow
 def test_a_scheduler_that_was_started_by_hand_in_another_folder(tmp_path, by_hand, serial, capsys):
     by_hand.worker("--nthreads", "1")
     by_hand.worker("--nthreads", "3")  # one run at a time in a process all the same
     path = tmp_path / "study.json"
     path.write_text(json.dumps(many()))
     command = ["study", str(path), "-o", str(tmp_path / "out"), "--scheduler", by_hand.address]
+    command += ["--tls", str(by_hand.key)]
     assert cli.main(command) == 0
     assert f"of {RUNS} runs have figures" in capsys.readouterr().out
     assert (tmp_path / "out" / table.FILE).read_bytes() == serial
@@ -162,6 +172,7 @@ cp "$1/out/table.csv" "$1/table.csv"
 """
 
 
+@pytest.mark.slow
 def test_a_disk_that_is_full_loses_no_run_of_a_cluster(tmp_path, serial):
     need_mounts()
     (tmp_path / "study.json").write_text(json.dumps(many()))
@@ -193,7 +204,7 @@ def test_a_worker_whose_disk_is_full_is_told(tmp_path, by_hand):
     )
     before = ["unshare", "--mount", "bash", "-c", made, "worker"]
     by_hand.worker("--nthreads", "1", "--local-directory", str(place), before=before)
-    found = making.study(path, tmp_path / "out", scheduler=by_hand.address)
+    found = making.study(path, tmp_path / "out", scheduler=by_hand.address, tls=by_hand.key)
     assert found.broken_off == len(found.table) == 4
     assert all("No space left on device" in error for error in found.table["error"])
     again = making.study(path, tmp_path / "out", workers=0)
@@ -206,7 +217,7 @@ def test_files_are_sent_to_workers_that_do_not_see_them(tmp_path, by_hand):
     making.study(path, tmp_path / "here", workers=0)
     hidden = f'mount -t tmpfs none {tmp_path / "job"} && exec "$@"'
     by_hand.worker("--nthreads", "1", before=["unshare", "--mount", "bash", "-c", hidden, "worker"])
-    found = making.study(path, tmp_path / "out", scheduler=by_hand.address)
+    found = making.study(path, tmp_path / "out", scheduler=by_hand.address, tls=by_hand.key)
     assert found.table.done.all(), found.table["error"]
     assert (tmp_path / "out" / table.FILE).read_bytes() == (
         tmp_path / "here" / table.FILE
@@ -217,6 +228,7 @@ def test_files_are_sent_to_workers_that_do_not_see_them(tmp_path, by_hand):
     assert {file.name for file in sent} == {"part.brep", "path.csv"}
 
 
+@pytest.mark.slow
 def test_a_scheduler_that_restarts_loses_no_run(tmp_path, by_hand, serial):
     by_hand.worker("--nthreads", "1")
     restarted = []
@@ -228,7 +240,9 @@ def test_a_scheduler_that_restarts_loses_no_run(tmp_path, by_hand, serial):
             restarted[0].worker("--nthreads", "1")
 
     try:
-        making.study(many(), tmp_path / "out", scheduler=by_hand.address, told=told)
+        making.study(
+            many(), tmp_path / "out", scheduler=by_hand.address, tls=by_hand.key, told=told
+        )
     finally:
         for made in restarted:
             made.stop()
@@ -244,15 +258,15 @@ def test_a_scheduler_that_is_not_there_or_alone_is_told(tmp_path, by_hand, monke
     before = loops()
     monkeypatch.setattr(cluster, "WAIT_S", 3.0)
     with pytest.raises(InputError, match="has no workers; start some"):
-        making.study(study_of(), tmp_path / "a", scheduler=by_hand.address)
+        making.study(study_of(), tmp_path / "a", scheduler=by_hand.address, tls=by_hand.key)
     by_hand.stop()
     monkeypatch.setattr(clusters, "ANSWER_S", 0.5)
     with pytest.raises(
         InputError, match=f"no scheduler answers at {by_hand.address}.*4 runs are open"
     ):
-        making.study(study_of(), tmp_path / "b", scheduler=by_hand.address)
+        making.study(study_of(), tmp_path / "b", scheduler=by_hand.address, tls=by_hand.key)
     with pytest.raises(InputError, match="no scheduler answers at nonsense://"):
-        making.study(study_of(), tmp_path / "c", scheduler="nonsense://1")
+        making.study(study_of(), tmp_path / "c", scheduler="nonsense://1", tls=False)
     left = table.Table.read(tmp_path / "b" / table.FILE)
     assert (left["status"] == table.OPEN).all()
     # A connection that failed leaves no thread, for which the program's end would wait.
@@ -319,9 +333,8 @@ def test_a_worker_with_another_engine_is_refused(tmp_path):
     prepared = making.prepare(making.validate(study_of()))
     task, base = task_of(prepared, [], versions={**core.versions(), "beltgrinding": "0.0.1"})
     assert one.in_worker(task, {task["base"]: base}, tmp_path) == {"versions": core.versions()}
-    session = cluster._Session(None, None, None, ([], [], {}), (None, None), None, None, None)
     with pytest.raises(InputError, match="another engine"):
-        session._answered(task, {"versions": {"beltgrinding": "0.0.1"}}, "tcp://there")
+        Delivery(None, None).answered(task, {"versions": {"beltgrinding": "0.0.1"}}, "tls://there")
 
 
 def test_a_file_that_changes_meanwhile_is_not_sent(tmp_path):

@@ -123,6 +123,7 @@ def test_a_grid_has_every_value_with_every_other():
     assert [row[1] for row in found[:4]] == ["local_linear"] * 2 + ["local"] * 2
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_runs_and_another_others():
     entries = [law("normal", mean=40, sd=3), {"key": "stock.allowance_mm", "range": [0, 1]}]
     for method in ("monte_carlo", "latin_hypercube", "sobol_indices"):
@@ -219,6 +220,7 @@ def test_correlations_that_cannot_be_and_designs_that_have_none_are_refused():
         rows(wide, "grid")
 
 
+@pytest.mark.slow
 def test_the_manuals_picture_of_the_designs():
     import io
 

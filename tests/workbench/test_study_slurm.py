@@ -28,6 +28,7 @@ def cluster(tmp_path_factory):
     one.stop()
 
 
+@pytest.mark.slow
 def test_an_array_whose_jobs_are_cancelled_gives_the_serial_table(
     cluster, tmp_path, monkeypatch, capsys
 ):

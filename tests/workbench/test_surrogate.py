@@ -1,22 +1,17 @@
 """The surrogate of the contact: its database, its training, its files, its use in a job."""
 
 import json
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "Mod" / "BeltGrinding"))
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-
-from beltgrinding.engine import InputError  # noqa: E402
-from beltgrinding import cli  # noqa: E402
-from beltgrinding.contact import single_contact as contact, surrogate  # noqa: E402
-from beltgrinding.job import surrogate_file  # noqa: E402
-from beltgrinding.simulation import run as runs  # noqa: E402
-from beltgrinding.job import load as jobs  # noqa: E402
-from test_job import plate_job  # noqa: E402
+from beltgrinding.engine import InputError
+from beltgrinding import cli
+from beltgrinding.contact import single_contact as contact, surrogate
+from beltgrinding.job import surrogate_file
+from beltgrinding.simulation import run as runs
+from beltgrinding.job import load as jobs
+from test_job import plate_job
 
 WHEEL = {"outer_radius_mm": 60, "width_mm": 15, "rim_thickness_mm": 10}
 
@@ -37,6 +32,7 @@ def trained(tmp_path_factory):
     return folder, report
 
 
+@pytest.mark.slow
 def test_held_out_error_is_that_of_a_rough_surrogate(trained):
     _, report = trained
     assert report["held_out_contacts"] == 50

@@ -254,6 +254,7 @@ def test_proper_triangles_are_each_there_once(corners):
     assert [tuple(t) for t in view_mesh.proper_triangles(triangles).tolist()] == sorted(found)
 
 
+@pytest.mark.slow
 def test_a_million_samples_are_thinned_honestly(ground):
     field, deepest = large_field(1_000_000)
     assert field.size > 900_000
@@ -502,6 +503,7 @@ def test_without_three_js_the_report_says_what_to_install(ground, tmp_path, monk
         beltgrinding.view(ground)
 
 
+@pytest.mark.slow
 def test_a_pdf_carries_no_script(ground, tmp_path):
     pytest.importorskip("weasyprint")
     beltgrinding.report(ground, tmp_path / "r.html", pdf=tmp_path / "r.pdf")

@@ -3,6 +3,7 @@
 #include "beltgrinding/error.h"
 #include "shape_transfer.h"
 #include "support.h"
+#include "support/param_name.h"
 
 namespace beltgrinding {
 namespace {
@@ -73,12 +74,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Part{"cad_nasty/spring_invalid.igs", 6, 0.5, 72.5},
                     Part{"cad_nasty/assembly_inch_scaled_25x.stp", 160, 20, 5080},
                     Part{"cad_nasty/pipes_corrupted_zero_area.stp", 79, 4, 25470}),
-    [](const auto& test) {
-        std::string name = std::filesystem::path(test.param.file).stem().string();
-        std::replace_if(
-            name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
-        return name;
-    });
+    [](const auto& test) { return param_name(test.param.file); });
 
 std::vector<Fact> warnings_of(const std::filesystem::path& path) {
     return Shape::read(path.string()).warnings();

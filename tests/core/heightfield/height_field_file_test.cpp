@@ -1,5 +1,6 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <hdf5.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -7,10 +8,13 @@
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <stdexcept>
 #include <system_error>
+#include <vector>
 
 #include "beltgrinding/error.h"
 #include "beltgrinding/height_field.h"
+#include "heightfield/sound_field.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {
@@ -32,6 +36,19 @@ class HeightFieldFile : public ::testing::Test {
     }
     void overwrite(const std::string& content) const {
         std::ofstream(path_, std::ios::binary | std::ios::trunc) << content;
+    }
+
+    /// Puts another value into an array of the file, whose checksums are then right again.
+    template <class T>
+    void put(const char* array, const std::vector<hsize_t>& place, hid_t type, T value) const {
+        const hid_t file = H5Fopen(path_.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+        const hid_t set = H5Dopen2(file, array, H5P_DEFAULT);
+        const hid_t space = H5Dget_space(set);
+        const std::vector<hsize_t> one(place.size(), 1);
+        const hid_t memory = H5Screate_simple(1, one.data(), nullptr);
+        H5Sselect_hyperslab(space, H5S_SELECT_SET, place.data(), nullptr, one.data(), nullptr);
+        EXPECT_GE(H5Dwrite(set, type, memory, space, H5P_DEFAULT, &value), 0);
+        H5Sclose(memory), H5Sclose(space), H5Dclose(set), H5Fclose(file);
     }
 
     std::filesystem::path folder_;
@@ -83,9 +100,54 @@ TEST_F(HeightFieldFile, TheTraceComesBackAndAFileWithoutOpens) {
                               +[](RemovalTrace& t) { t.dominant.pop_back(); }}) {
         HeightField bad = field;
         spoil(bad.trace);
-        write_hdf5(bad, path_, "");
-        EXPECT_THROW(read_hdf5(path_), InputError);
+        EXPECT_THROW(write_hdf5(bad, path_, ""), std::logic_error);
+        EXPECT_EQ(read_hdf5(path_).trace.last, field.trace.last);  // the old one
     }
+    put("trace_last_motion", {2}, H5T_NATIVE_UINT32, RemovalTrace::kNever);
+    EXPECT_THROW(read_hdf5(path_), InputError);
+    write_hdf5(field, path_, "");
+    put("trace_peak_pressure_MPa", {3}, H5T_NATIVE_FLOAT, INFINITY);
+    EXPECT_THROW(read_hdf5(path_), InputError);
+}
+
+// What a reader would refuse is not written: who computed it is told where it is wrong.
+TEST_F(HeightFieldFile, WhatIsNotSoundIsNoFile) {
+    const HeightField field = testing::plate(3.0, 2.0, 1.0, 0.2);
+    const auto fault = [&](auto spoil) -> std::string {
+        HeightField bad = field;
+        bad.heat.rise.assign(bad.size(), 300.0F);
+        bad.heat.motion.assign(bad.size(), 1);
+        check_sound(bad);
+        spoil(bad);
+        try {
+            check_sound(bad);
+        } catch (const std::logic_error& error) {
+            EXPECT_THROW(hdf5_image(bad, ""), std::logic_error);
+            return error.what();
+        }
+        return "";
+    };
+    const auto names = [](const std::string& text, const char* part) {
+        return text.find(part) != std::string::npos;
+    };
+    EXPECT_TRUE(names(fault([](HeightField& f) { f.height[4] = NAN; }), "sample 4"));
+    EXPECT_TRUE(names(fault([](HeightField& f) { f.stock_height[4] = INFINITY; }), "sample 4"));
+    EXPECT_TRUE(names(fault([](HeightField& f) { f.area[5] = -1.0F; }), "sample 5"));
+    EXPECT_TRUE(names(fault([](HeightField& f) { f.heat.rise[2] = 4.7e11F; }), "sample 2"));
+    EXPECT_TRUE(names(fault([](HeightField& f) { f.measured.assign(1, 0.0F); }), "measured"));
+}
+
+TEST(HeightField, WhatIsGroundIsNeverLessThanNothing) {
+    HeightField field = testing::plate(3.0, 2.0, 1.0, 0.3);  // in single precision 0.30000001
+    EXPECT_EQ(removed_from(field, 0), 0.0);
+    field.height[1] = std::nextafter(field.height[1], 0.0);
+    EXPECT_EQ(removed_from(field, 1), 0.0);
+    field.height[2] = 0.1;
+    EXPECT_NEAR(removed_from(field, 2), 0.2, 1e-7);
+    field.height[3] = -0.1;
+    EXPECT_NEAR(removed_from(field, 3), 0.4, 1e-7);
+    field.height[4] = 0.31;
+    EXPECT_EQ(removed_from(field, 4), 0.0);
 }
 
 TEST_F(HeightFieldFile, AFailedWriteNamesThePathAndLeavesTheOldFile) {
@@ -126,14 +188,19 @@ TEST_F(HeightFieldFile, RefusesAnythingElse) {
     EXPECT_THROW(read_hdf5((folder_ / "absent.h5").string()), InputError);
     overwrite("no HDF5 at all");
     EXPECT_THROW(read_hdf5(path_), InputError);
-    HeightField field = testing::plate(2.0, 2.0, 1.0);
-    field.triangles.push_back({0, 1, 1000});
+    const HeightField field = testing::plate(2.0, 2.0, 1.0);
     write_hdf5(field, path_, "");
+    put("triangles", {1, 2}, H5T_NATIVE_UINT32, std::uint32_t{1000});
     EXPECT_THROW(read_hdf5(path_), InputError);
-    field = testing::plate(2.0, 2.0, 1.0);
-    field.area.pop_back();
     write_hdf5(field, path_, "");
+    put("height", {3}, H5T_NATIVE_DOUBLE, double{NAN});
     EXPECT_THROW(read_hdf5(path_), InputError);
+    HeightField bad = field;
+    bad.triangles.push_back({0, 1, 1000});
+    EXPECT_THROW(write_hdf5(bad, path_, ""), std::logic_error);
+    bad = field;
+    bad.area.pop_back();
+    EXPECT_THROW(write_hdf5(bad, path_, ""), std::logic_error);
 }
 
 TEST_F(HeightFieldFile, DamagedBytesAreRefusedOrReadButNeverCrash) {

@@ -76,9 +76,10 @@ std::vector<MotionShare> motions_of(const HeightField& field, const Cluster& clu
             const bool also = trace.first[i] == motion || trace.last[i] == motion;
             if (!dominant && !(cluster.above && also)) continue;
             any = true;
-            share.share += field.area[i] / cluster.area;
+            share.share += field.area[i];
             if (dominant) share.depth = std::max<double>(share.depth, trace.dominant_depth[i]);
         }
+        share.share /= cluster.area;
         if (any) found[motion] = share;
     }
     std::vector<MotionShare> shares;

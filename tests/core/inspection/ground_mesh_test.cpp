@@ -23,6 +23,7 @@
 #include "beltgrinding/error.h"
 #include "brep/surface_mesh.h"
 #include "shape_impl.h"
+#include "support/param_name.h"
 
 namespace beltgrinding {
 namespace {
@@ -274,7 +275,8 @@ INSTANTIATE_TEST_SUITE_P(Cad, RealPart,
                                          Part{"cad/pump_cover.brep", 1, true},
                                          Part{"cad/key_k1_alias.stp", 1, true},
                                          Part{"cad_nasty/nut_tiny_faces.brep", 1, true},
-                                         Part{"cad/casting_3flange_open_shell.stp", 1, false}));
+                                         Part{"cad/casting_3flange_open_shell.stp", 1, false}),
+                         [](const auto& test) { return param_name(test.param.file); });
 
 }  // namespace
 }  // namespace beltgrinding

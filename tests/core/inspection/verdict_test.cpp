@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "beltgrinding/deviation.h"
 #include "beltgrinding/error.h"
 #include "inspection/zones.h"
 #include "support/synthetic_field.h"
@@ -41,6 +42,27 @@ void bump(HeightField& field, double x, double y, double radius, double peak) {
         const double q = (std::pow(p.x() - x, 2) + std::pow(p.y() - y, 2)) / (radius * radius);
         if (q < 1.0) field.height[i] += peak * (1.0 - q);
     }
+}
+
+// 0.3 mm of stock is a little more in single precision.
+TEST(Verdict, WhereNothingIsGroundNothingIsRemoved) {
+    const HeightField field = testing::plate(60.0, 40.0, 0.2, 0.3);
+    const Verdict verdict = judge(field, {}, kBand);
+    EXPECT_EQ(verdict.whole.removed_volume, 0.0);
+    EXPECT_EQ(deviation_statistics(field, kBand).removed_volume, 0.0);
+    EXPECT_NEAR(verdict.whole.stock_volume, 60.0 * 40.0 * 0.3, 1e-2);
+}
+
+TEST(Verdict, AMotionThatGroundAllOfAClusterHasAllOfIt) {
+    HeightField field = testing::plate(60.0, 40.0, 0.2, 0.3);
+    field.trace.reset(field.size());
+    for (std::size_t i = 0; i < field.size(); ++i) {
+        field.area[i] *= 1.0F + 0.1F * static_cast<float>(std::sin(static_cast<double>(i)));
+        field.trace.first[i] = field.trace.last[i] = field.trace.dominant[i] = 3;
+    }
+    const Verdict verdict = judge(field, {}, kBand);
+    ASSERT_EQ(verdict.clusters.size(), 1u);
+    EXPECT_EQ(verdict.clusters[0].motions.at(0).share, 1.0);
 }
 
 TEST(Verdict, ABumpAndAGougeAreTheClustersThatTheyAre) {

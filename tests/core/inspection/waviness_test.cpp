@@ -97,7 +97,8 @@ TEST(Waviness, OfEachFaceIsWhatItIsAlone) {
             both.normal[to] = from.normal[i];
             both.height[to] = from.height[i];
             both.face[to] = face;
-            both.trace.last[to] = both.trace.dominant[to] = from.trace.last[i] + motions;
+            both.trace.first[to] = both.trace.last[to] = both.trace.dominant[to] =
+                from.trace.last[i] + motions;
         }
     };
     put(coarse.field, 0, 9, 0);

@@ -15,6 +15,7 @@
 #include "beltgrinding/mesh_reader.h"
 #include "meshio/mesh_3mf.h"
 #include "support/synthetic_field.h"
+#include "support/unsound_fields.h"
 
 namespace beltgrinding {
 namespace {
@@ -131,6 +132,16 @@ TEST(ThreeMf, LeavesTheProgramsLocaleAsItWas) {
     EXPECT_EQ(std::setlocale(LC_ALL, nullptr), ours);
     std::filesystem::remove(path);
     std::setlocale(LC_ALL, before.c_str());
+}
+
+TEST(MeshWriter, AnUnsoundFieldIsRefused) {
+    const HeightField plate = testing::plate(4.0, 3.0, 1.0, 0.2);
+    testing::expect_unsound_refused(plate, [](HeightField& f) {
+        written([&](const FileMemory& memory) { deviation_ply(f, {}, true, "", memory); });
+    });
+    testing::expect_unsound_refused(plate, [](HeightField& f) {
+        written([&](const FileMemory& memory) { mesh_ply(f, true, memory); });
+    });
 }
 
 }  // namespace

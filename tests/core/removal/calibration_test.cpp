@@ -8,6 +8,7 @@
 
 #include "beltgrinding/error.h"
 #include "beltgrinding/removal_law.h"
+#include "support/hammann.h"
 
 namespace beltgrinding {
 namespace {
@@ -43,7 +44,8 @@ TEST(Calibration, LinearGrindIsHammannsDepth) {
     GrindVector x = linear();
     x[kLnCoefficient] = std::log(1e-5);
     const double depth = std::exp(log_grind(x, {}, g, 0, g.area[0], nullptr));
-    EXPECT_NEAR(depth, hammann_depth(1e-5, 1.0, g.speed[0], g.force[0], 40.0, 25.0), 1e-12);
+    EXPECT_NEAR(depth, testing::hammann_depth(1e-5, 1.0, g.speed[0], g.force[0], 40.0, 25.0),
+                1e-12);
 }
 
 TEST(Calibration, GradientIsThatOfDifferences) {

@@ -107,6 +107,11 @@ TEST(BeltWear, RefusesNonsense) {
     EXPECT_THROW((BeltState{-1.0, 0, 0}.validate()), InputError);
 }
 
+TEST(Curve, PointsTooNearOneAnotherAreRefused) {
+    EXPECT_THROW(Curve({{0.0, 0.0}, {1e-300, 1e200}}, "a"), InputError);
+    EXPECT_THROW(Curve({{0.0, 0.0}, {1e-300, 1e200}, {1.0, 1e200}}, "a"), InputError);
+}
+
 TEST(BeltWear, ModelsAndVariablesHaveNames) {
     EXPECT_EQ(BeltWear::model_named("none"), BeltWear::Model::kNone);
     EXPECT_EQ(BeltWear::model_named("exponential"), BeltWear::Model::kExponential);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "beltgrinding/error.h"
+#include "support/hammann.h"
 
 namespace beltgrinding {
 namespace {
@@ -29,7 +30,8 @@ TEST(RemovalLaw, APassRemovesHammannsDepth) {
     ProcessState state{speed, wear, feed, force, width * length};
     Eigen::ArrayXd rate;
     HammannLaw(k).rate(Eigen::ArrayXd::Constant(1, force / (width * length)), state, rate);
-    EXPECT_NEAR(rate[0] * length / feed, hammann_depth(k, wear, speed, force, feed, width), 1e-12);
+    EXPECT_NEAR(rate[0] * length / feed, testing::hammann_depth(k, wear, speed, force, feed, width),
+                1e-12);
 }
 
 /// Rate under one pressure.
@@ -115,6 +117,23 @@ TEST(RemovalLaw, RefusesNonsense) {
 
     EXPECT_THROW(LocalLaw({-1.0}), InputError);
     EXPECT_THROW(HammannLaw(std::nan("")), InputError);
+}
+
+TEST(RemovalLaw, IsFiniteWhateverThePressureOrRefused) {
+    Eigen::ArrayXd pressure(4), rate;
+    pressure << 0.0, 1e-300, 1.0, 1e300;
+    LocalLawParameters p;
+    p.pressure_exponent = 20.0;
+    for (const double coefficient : {0.0, 1e-4, 1e300}) {
+        p.coefficient = coefficient;
+        LocalLaw(p).rate(pressure, {}, rate);
+        EXPECT_TRUE(rate.isFinite().all() && (rate >= 0.0).all());
+        EXPECT_EQ(rate[0], 0.0);
+        HammannLaw(coefficient).rate(pressure, {20000.0, 1.0, 50.0, 1e300, 1e-3}, rate);
+        EXPECT_TRUE(rate.isFinite().all() && (rate >= 0.0).all());
+    }
+    p.speed_exponent = 1e4;
+    EXPECT_THROW(LocalLaw(p).rate(pressure, {40000.0}, rate), InputError);
 }
 
 TEST(RemovalLaw, IsMadeByName) {

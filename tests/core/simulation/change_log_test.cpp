@@ -1,4 +1,4 @@
-#include "simulation/change_log.h"
+#include "recorders/change_log.h"
 
 #include <gtest/gtest.h>
 

@@ -18,7 +18,8 @@
 
 #include "beltgrinding/contact_factory.h"
 #include "beltgrinding/simulation.h"
-#include "simulation/checkpoints.h"
+#include "checkpoints/checkpoints.h"
+#include "recorders/recording.h"
 #include "support/poses.h"
 #include "support/synthetic_field.h"
 

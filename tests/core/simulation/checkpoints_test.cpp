@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "beltgrinding/error.h"
-#include "contact/compliance.h"
+#include "elastic/compliance.h"
 #include "simulation/checkpointed.h"
 
 namespace beltgrinding {
@@ -123,6 +123,7 @@ TEST(Checkpoints, AFieldThatWasGroundBefore) {
         field.trace.reset(field.size());
         std::fill(field.trace.first.begin(), field.trace.first.end(), 3u);
         std::fill(field.trace.last.begin(), field.trace.last.end(), 5u);
+        std::fill(field.trace.dominant.begin(), field.trace.dominant.end(), 4u);
         return field;
     };
     expect_the_same_from_checkpoints(s);

@@ -9,7 +9,7 @@
 #include "base/threads.h"
 #include "beltgrinding/error.h"
 #include "beltgrinding/simulation.h"
-#include "contact/compliance.h"
+#include "elastic/compliance.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {

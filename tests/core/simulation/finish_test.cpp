@@ -6,7 +6,7 @@
 
 #include "beltgrinding/error.h"
 #include "beltgrinding/simulation.h"
-#include "contact/wheel_rim.h"
+#include "elastic/wheel_rim.h"
 #include "support/poses.h"
 #include "support/synthetic_field.h"
 
@@ -295,7 +295,7 @@ TEST(Finish, AFileKeepsItAndNonsenseInOneIsRefused) {
     EXPECT_EQ(back.finish.motion, field.finish.motion);
     EXPECT_EQ(back.finish.outside, field.finish.outside);
     field.finish.unknown[3] = 1.5f;
-    EXPECT_THROW(read_hdf5_image(hdf5_image(field, ""), "test"), InputError);
+    EXPECT_THROW(hdf5_image(field, ""), std::logic_error);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 
 #include "beltgrinding/error.h"
 #include "beltgrinding/simulation.h"
-#include "contact/compliance.h"
+#include "elastic/compliance.h"
 #include "support/poses.h"
 #include "support/synthetic_field.h"
 

@@ -6,7 +6,7 @@
 #include "base/threads.h"
 #include "beltgrinding/heat.h"
 #include "beltgrinding/simulation.h"
-#include "contact/wheel_rim.h"
+#include "elastic/wheel_rim.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {

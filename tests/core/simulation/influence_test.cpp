@@ -5,7 +5,7 @@
 
 #include "beltgrinding/error.h"
 #include "beltgrinding/simulation.h"
-#include "contact/wheel_rim.h"
+#include "elastic/wheel_rim.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {

@@ -5,7 +5,7 @@
 
 #include "beltgrinding/error.h"
 #include "beltgrinding/simulation.h"
-#include "contact/compliance.h"
+#include "elastic/compliance.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {

@@ -1,4 +1,4 @@
-#include "simulation/recording.h"
+#include "recorders/recording.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "beltgrinding/error.h"
 #include "beltgrinding/simulation.h"
-#include "contact/wheel_rim.h"
+#include "elastic/wheel_rim.h"
 #include "support/synthetic_field.h"
 
 namespace beltgrinding {

@@ -1,7 +1,7 @@
 #include "beltgrinding/simulation.h"
-#include "contact/half_space.h"
-#include "contact/wheel_rim.h"
-#include "simulation/recording.h"
+#include "elastic/half_space.h"
+#include "elastic/wheel_rim.h"
+#include "recorders/recording.h"
 
 #include <gtest/gtest.h>
 
@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "beltgrinding/error.h"
+#include "support/hammann.h"
 #include "support/poses.h"
 #include "support/synthetic_field.h"
 
@@ -47,7 +48,7 @@ double mean_removal(const HeightField& field, double centre, double half) {
 TEST(Simulation, APassOverAPlateRemovesHammannsDepthByBothLaws) {
     const double feed = 40.0;
     const ToolPath path({pressing_down(10, 30, 0.5, feed), pressing_down(110, 30, 0.5, feed)}, {});
-    const double depth = hammann_depth(kCoefficient, 1.0, 20000.0, 40.0, feed, 20.0);
+    const double depth = testing::hammann_depth(kCoefficient, 1.0, 20000.0, 40.0, feed, 20.0);
     for (const double spacing : {0.3, 0.5, 0.8}) {
         for (const bool global : {false, true}) {
             HeightField field = testing::plate(120.0, 60.0, spacing, 0.5);

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "beltgrinding/simulation.h"
-#include "contact/wheel_rim.h"
+#include "elastic/wheel_rim.h"
 #include "support/poses.h"
 #include "support/synthetic_field.h"
 

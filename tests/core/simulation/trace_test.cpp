@@ -7,10 +7,10 @@
 #include "base/threads.h"
 #include "beltgrinding/error.h"
 #include "beltgrinding/simulation.h"
-#include "contact/regression.h"
-#include "contact/wheel_rim.h"
+#include "elastic/wheel_rim.h"
 #include "support/poses.h"
 #include "support/synthetic_field.h"
+#include "surrogate/regression.h"
 
 namespace beltgrinding {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "base/threads.h"
 #include "support/synthetic_field.h"
+#include "support/unsound_fields.h"
 
 namespace beltgrinding {
 namespace {
@@ -119,6 +120,13 @@ TEST(Thickness, IsTheSameOnOneAndTwoThreads) {
     set_threads(0);
     EXPECT_EQ(found[0].design, found[1].design);
     EXPECT_EQ(found[0].deviation, found[1].deviation);
+}
+
+TEST(Thickness, AnUnsoundFieldAndASampleThatIsNotThereAreRefused) {
+    const HeightField plate = testing::plate(4.0, 3.0, 1.0, 0.2);
+    testing::expect_unsound_refused(plate, [](HeightField& f) { measure_thickness(f, {0}, {}); });
+    EXPECT_THROW(measure_thickness(plate, {static_cast<std::uint32_t>(plate.size())}, {}),
+                 InputError);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "contact/surrogate.h"
+#include "surrogate/surrogate.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <random>
 
 #include "beltgrinding/error.h"
-#include "contact/compliance.h"
+#include "elastic/compliance.h"
 #include "training/train_regression.h"
 
 namespace beltgrinding {

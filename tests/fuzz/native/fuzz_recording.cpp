@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "beltgrinding/error.h"
-#include "simulation/recording.h"
+#include "recorders/recording.h"
 #include "target.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -55,7 +55,8 @@ function(beltgrinding_library name)
 endfunction()
 
 beltgrinding_library(core
-  ROOMS base foreign mesh heightfield contact removal toolpath events heat simulation inspection
+  ROOMS base foreign mesh heightfield contact elastic surrogate gap belt models removal toolpath events heat
+        engine recorders checkpoints simulation inspection
   PUBLIC Eigen3::Eigen TBB::tbb PRIVATE hdf5::hdf5 ${CMAKE_DL_LIBS})
 if(BELTGRINDING_HAS_BREP)
   get_target_property(toolkits bg_brep BELTGRINDING_PACKAGES)

@@ -10,8 +10,9 @@ from pathlib import Path
 
 status = 1
 try:
-    # The checkout's workbench before an installed one, which FreeCAD has put in front.
-    sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "Mod" / "BeltGrinding"))
+    # The checkout's workbench before an installed one, which FreeCAD has put in front; it clears PYTHONPATH.
+    root = Path(__file__).resolve().parents[1]
+    sys.path[:0] = [str(root / "Mod" / "BeltGrinding"), str(root / "tests")]
     # Not as __main__: FreeCAD keeps names of its own there, and looks for them.
     runpy.run_path(os.environ["BELTGRINDING_RUN"], run_name="script")
     status = 0

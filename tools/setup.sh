@@ -10,6 +10,8 @@ python=/usr/bin/python3
 export BELTGRINDING_SHARED=${BELTGRINDING_SHARED:-$root/../shared}
 export PYTHONPATH=$root/Mod/BeltGrinding:$build/python${PYTHONPATH:+:$PYTHONPATH}
 export QTWEBENGINE_DISABLE_SANDBOX=1 LANG=${LANG:-C.UTF-8}
+# What one checkout compiled serves another on the same machine: ccache sees paths from the checkout on.
+export CCACHE_BASEDIR=${CCACHE_BASEDIR:-$root} CCACHE_NOHASHDIR=1
 
 packages_build=(g++ cmake ninja-build ccache libeigen3-dev pybind11-dev python3-dev libtbb-dev libfmt-dev
     libocct-foundation-dev libocct-modeling-data-dev libocct-modeling-algorithms-dev

@@ -36,7 +36,8 @@ from structure import restructured, words_of  # noqa: E402
 
 WATCHED = str(Path(programs.__file__).parent)  # the folder whose code is watched
 LARGEST = 6_000  # bytes of an input in the corpus: short ones are read often
-LIMIT, WATCHED_LIMIT = 2.0, 8.0  # s; being watched takes several times as long
+LIMIT = fuzzing.LIMIT  # s
+WATCHED_LIMIT = 4 * LIMIT  # s; being watched takes several times as long
 PATIENCE, SELDOM = 200, 25  # calls of a function without news; it is watched in one of so many then
 ROUND = 500  # inputs of a process, which then hands on what it found
 SIZES = 64 << 20, 4 << 30  # bytes: a whole reader must do with the second

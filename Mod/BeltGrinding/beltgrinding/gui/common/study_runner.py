@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 from ...objects import study as studies
 from ...objects.kinds import DocumentObject
 from .compat import translate
 from .kinds import Context, Done, Told
 from .runner import Runner
+
+if TYPE_CHECKING:
+    from ...studies.making import Progress
 
 
 class StudyRunner(Runner):
@@ -17,7 +20,8 @@ class StudyRunner(Runner):
     """
 
     def __init__(self, obj: DocumentObject, progress: Told, done: Done) -> None:
-        self.study, self.told = obj.Name, None
+        self.study = obj.Name
+        self.told: Progress | None = None
         job = obj.getParentGroup()
         self.task = studies.Work(obj, job)
         super().__init__(job, progress, done)
@@ -25,7 +29,7 @@ class StudyRunner(Runner):
     def work(self, context: Context) -> studies.Found:
         return self.task.find(self.data, context, self._tell)
 
-    def _tell(self, progress: Any) -> None:
+    def _tell(self, progress: Progress) -> None:
         self.told = progress
 
     def _store(self, found: studies.Found) -> studies.Found:

@@ -178,8 +178,8 @@ class RobotPath(Proxy):
     def _tool_path(self, obj: DocumentObject, feeds: Floats) -> core.ToolPath:
         cell = obj.Machine.Proxy.cell(obj.Machine) if obj.Machine else {}
         held = self.arrays(obj)
-        frames, lists = held["frames"], (held["forces"], held["rapid"], held["lines"])
-        return core.ToolPath(frames, feeds, *lists, zones=held["zones"], **cell)
+        lists = held["forces"], held["rapid"], held["lines"]
+        return core.ToolPath(held["frames"], feeds, *lists, zones=held["zones"], **cell)
 
     def execute(self, obj: DocumentObject) -> None:
         if obj.SourceObject is not None:

@@ -18,33 +18,22 @@ from ...objects import api, stored_facts
 from ...objects.kinds import Document, DocumentObject
 from ...studies import names, report, table as tables
 from ..common.compat import QtCore, QtGui, translate
-from ..common.kinds import Json, TableItem, Widget
+from ..common.kinds import Json, Widget
 from ..common.messages import error_text, inform, tell
 from ..common.report_language import language, words
 from ..common.save_dialog import file_to_write
-from ..common.theme import theme
 from ..common.transaction import transaction
 from ..panels.study_panel import StudyPanel
 from ..widgets.picture_label import PictureLabel
 from .object_dock import ObjectDock
+from .study_cells import NUMBER, cell
 
 HEIGHT = 300  # pixels of the dock as it comes
 SHARES = [620, 460]  # of table and charts, side by side
 DPI = 100
 LARGE = 0.9  # of the screen
 HIDDEN = (tables.HASH,)
-NUMBER = QtCore.Qt.UserRole
 MOST_WARNINGS = 4  # lines above the table; all are in the tip
-
-
-class _Cell(QtGui.QTableWidgetItem):
-    """Sorted by number where it is one; empty ones come last."""
-
-    def __lt__(self, other: TableItem) -> bool:
-        mine, its = self.data(NUMBER), other.data(NUMBER)
-        if mine is None or its is None:
-            return (mine is None, self.text()) < (its is None, other.text())
-        return mine < its
 
 
 class StudyDock(ObjectDock):
@@ -194,7 +183,7 @@ class StudyDock(ObjectDock):
             head.setToolTip(name)
             self.rows.setHorizontalHeaderItem(column, head)
             for row, value in enumerate(made[name].tolist()):
-                self.rows.setItem(row, column, self._cell(made, name, value, row))
+                self.rows.setItem(row, column, cell(made, name, value, row))
         self.rows.resizeColumnsToContents()
         self.rows.setSortingEnabled(True)
         self.rows.sortByColumn(0, QtCore.Qt.AscendingOrder)
@@ -208,40 +197,6 @@ class StudyDock(ObjectDock):
         if name in heads or name in known(made.varied):
             return heads.get(name, name)
         return names.figure(name, self.texts)
-
-    def _cell(self, made: tables.Table, name: str, value: Any, row: int) -> TableItem:
-        number = isinstance(value, (int, float)) and not isinstance(value, bool)
-        if value is None or value != value:
-            cell = _Cell("")
-        elif number:
-            cell = _Cell(f"{value:.5g}" if isinstance(value, float) else str(value))
-            cell.setData(NUMBER, float(value))
-            cell.setTextAlignment(QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter)
-            cell.setToolTip(repr(value))
-        else:
-            cell = _Cell(self._word(name, str(value)))
-            cell.setToolTip(str(value))
-        if made[tables.STATUS][row] == tables.FAILED:
-            cell.setForeground(QtGui.QColor(theme().warning))
-            cell.setToolTip(str(made[tables.ERROR][row]))
-        elif name == "overall" and value == "fail":
-            cell.setForeground(QtGui.QColor(theme().warning))
-        return cell
-
-    def _word(self, name: str, text: Any) -> str:
-        if name == tables.STATUS:
-            return {
-                tables.DONE: translate("BeltGrinding", "done"),
-                tables.FAILED: translate("BeltGrinding", "failed"),
-                tables.OPEN: translate("BeltGrinding", "open"),
-            }.get(text, text)
-        if name == "overall" or name.endswith(".verdict"):
-            return {
-                "pass": translate("BeltGrinding", "pass"),
-                "fail": translate("BeltGrinding", "fail"),
-                "unknown": translate("BeltGrinding", "unknown"),
-            }.get(text, text)
-        return text
 
     def _tell(self, obj: DocumentObject) -> None:
         if obj.OutOfDate:

@@ -185,8 +185,8 @@ class VerdictDock(ObjectDock):
         if field is None:
             return
         if self.cluster_of is None:
-            self.field, self.cluster_of = objects.cluster_of_samples(self._job(), obj.Simulation)
-            field = known(self.field)
+            field, self.cluster_of = objects.cluster_of_samples(self._job(), obj.Simulation)
+            self.field = field
         if self.scene is None:
             self.scene = VerdictScene(obj.Document)
         inside = self.cluster_of == row

@@ -7,10 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from ...base.kinds import known
 from ...objects.kinds import DocumentObject
 from ..common.compat import QtCore, QtGui, translate
-from ..common.kinds import Array, Painter, QtEvent
+from ..common.kinds import Array, Painter, QtEvent, known
 from ..common.theme import readable, theme
 from .strip_chart import envelope
 

@@ -6,11 +6,21 @@ import math
 
 import numpy as np
 
-from ...base.kinds import known
 from ...inspection import section_plot
 from ...objects.preferences import deviation_unit, length_text
 from ..common.compat import QtCore, QtGui, translate
-from ..common.kinds import Array, Colour, Json, Painter, Pen, Polygon, QtEvent, QtPoint, Rectangle
+from ..common.kinds import (
+    Array,
+    Colour,
+    Json,
+    Painter,
+    Pen,
+    Polygon,
+    QtEvent,
+    QtPoint,
+    Rectangle,
+    known,
+)
 from ..common.theme import readable, theme
 
 LEFT, RIGHT, TOP, BOTTOM = 64, 12, 28, 40  # pixels around the plot

@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from ...objects import study as studies
 from ...objects.kinds import DocumentObject
 from .compat import translate
 from .kinds import Context, Done, Told
 from .runner import Runner
-
-if TYPE_CHECKING:
-    from ...studies.making import Progress
 
 
 class StudyRunner(Runner):
@@ -21,7 +16,7 @@ class StudyRunner(Runner):
 
     def __init__(self, obj: DocumentObject, progress: Told, done: Done) -> None:
         self.study = obj.Name
-        self.told: Progress | None = None
+        self.told: studies.making.Progress | None = None
         job = obj.getParentGroup()
         self.task = studies.Work(obj, job)
         super().__init__(job, progress, done)
@@ -29,7 +24,7 @@ class StudyRunner(Runner):
     def work(self, context: Context) -> studies.Found:
         return self.task.find(self.data, context, self._tell)
 
-    def _tell(self, progress: Progress) -> None:
+    def _tell(self, progress: studies.making.Progress) -> None:
         self.told = progress
 
     def _store(self, found: studies.Found) -> studies.Found:

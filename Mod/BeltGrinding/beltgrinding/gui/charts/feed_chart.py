@@ -39,7 +39,8 @@ class FeedChart(QtGui.QWidget):
     def show_plan(self, obj: DocumentObject) -> None:
         """Shows what a Plan object holds."""
         self.along, self.rapid = np.array(obj.Along), np.array(obj.Rapid, dtype=bool)
-        self.of, self.chosen = np.array(obj.PathOf, dtype=int), None
+        self.of = np.array(obj.PathOf, dtype=int)
+        self.chosen = self.begun = None  # a drag that goes on was of the plan before
         document = obj.Document
         paths = [document.getObject(name) for name in obj.Paths]
         self.names = [name if path is None else path.Label for name, path in zip(obj.Paths, paths)]

@@ -1,6 +1,7 @@
 """The plan's panel: limits, rounds, before and after, the chart, Apply as one undo step, Cancel, programs written."""
 
 import json
+from types import SimpleNamespace
 
 import pytest
 import FreeCAD
@@ -23,6 +24,14 @@ from support.hands import (
 )
 
 pytestmark = pytest.mark.freecad(window=True)
+
+
+def mouse(chart, share, kind):
+    """Sends a chart an event of the mouse, at a share of its width."""
+    at = QtCore.QPointF(int(chart.width() * share), chart.height() // 2)
+    left = QtCore.Qt.LeftButton
+    event = QtGui.QMouseEvent(kind, at, left, left, QtCore.Qt.NoModifier)
+    QtGui.QApplication.sendEvent(chart, event)
 
 
 def test_from_the_limits_to_a_planned_program():
@@ -90,20 +99,9 @@ def test_cancel_leaves_all_as_it_was_and_mistakes_are_told():
 
     # Motions chosen in the chart stay, too.
     chart = field("feedChart")
-    for x, kind in (
-        (0.5, QtCore.QEvent.MouseButtonPress),
-        (0.7, QtCore.QEvent.MouseMove),
-        (0.7, QtCore.QEvent.MouseButtonRelease),
-    ):
-        at = QtCore.QPoint(int(chart.width() * x), chart.height() // 2)
-        event = QtGui.QMouseEvent(
-            kind,
-            QtCore.QPointF(at),
-            QtCore.Qt.LeftButton,
-            QtCore.Qt.LeftButton,
-            QtCore.Qt.NoModifier,
-        )
-        QtGui.QApplication.sendEvent(chart, event)
+    mouse(chart, 0.5, QtCore.QEvent.MouseButtonPress)
+    mouse(chart, 0.7, QtCore.QEvent.MouseMove)
+    mouse(chart, 0.7, QtCore.QEvent.MouseButtonRelease)
     settle()
     press("Leave these as they are")
     first, last = chart.chosen
@@ -111,6 +109,27 @@ def test_cancel_leaves_all_as_it_was_and_mistakes_are_told():
     assert plan.OutOfDate and "plan again" in field("state").text()
     press("Close")
     assert not Gui.Control.activeDialog()
+
+
+def test_a_plan_that_comes_during_a_drag_ends_it():
+    from beltgrinding.gui.charts.feed_chart import FeedChart
+
+    def plan_of(count):
+        names = ("Along", "OldFeeds", "NewFeeds", "OldForces", "NewForces")
+        figures = {name: [float(k) for k in range(count)] for name in names}
+        return SimpleNamespace(
+            **figures, Rapid=[False] * count, PathOf=[0] * count, Paths=[], Document=None
+        )
+
+    chart = FeedChart()
+    for count in (3, 0):  # motions of the plan that comes; before, the press was on the 19th of 20
+        chart.show_plan(plan_of(20))
+        mouse(chart, 0.93, QtCore.QEvent.MouseButtonPress)
+        assert chart.begun == 18
+        chart.show_plan(plan_of(count))
+        mouse(chart, 0.1, QtCore.QEvent.MouseMove)
+        assert chart.chosen is None
+    chart.deleteLater()
 
 
 @pytest.mark.slow

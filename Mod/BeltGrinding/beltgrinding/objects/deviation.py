@@ -330,11 +330,11 @@ def show(obj: DocumentObject, field: Field, scale: Scale, new_mesh: bool = True)
     sd = statistics.get("sd_p95", 0.0)
     obj.UncertaintyMean, obj.Uncertainty95 = statistics.get("sd_mean", 0.0), sd
     obj.ExpectedInTolerance = 100.0 * statistics.get("expected_in_tolerance_share", 0.0)
-    obj.UncertaintyLimit = _round_up(sd)
+    limit = obj.UncertaintyLimit = _round_up(sd)
     _show_temperatures(obj, field)
     _show_finish(obj, field)
     if obj.ColourBy == UNCERTAINTY and len(field.height_sd):
-        colours = core.uncertainty_colours(field, obj.UncertaintyLimit.Value)
+        colours = core.uncertainty_colours(field, limit)
     elif obj.ColourBy in (MEASURED, DIFFERENCE) and len(field.measured):
         colours = core.height_colours(scan_heights(obj, field), field.flags, *scale)
     elif obj.ColourBy == TEMPERATURE and field.heat is not None:

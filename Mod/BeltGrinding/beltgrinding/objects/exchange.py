@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import json
 import os
 from pathlib import Path
@@ -51,7 +50,8 @@ def export_job(job: DocumentObject, path: Path | str) -> Path:
 
 def _kept(data: bytes, path: Path) -> Path:
     """The path of a file with these bytes: ``path``, or the next number of it that is free."""
-    for number in itertools.count(2):
+    number = 2
+    while True:
         if not os.path.lexists(path):
             write_whole(path, data)
             return path
@@ -59,6 +59,7 @@ def _kept(data: bytes, path: Path) -> Path:
             return path
         stem = path.stem if number == 2 else path.stem.rpartition("_")[0]
         path = path.with_name(f"{stem}_{number}{path.suffix}")
+        number += 1
 
 
 def _relative(path: Path | str, folder: Path) -> str:

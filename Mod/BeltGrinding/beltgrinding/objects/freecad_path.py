@@ -90,9 +90,9 @@ class _Commands:
         self.centre = np.array(obj.Path.Center)
         self.at = np.full(3, math.nan)  # x, y, z of the machine, mm
         self.angles = np.zeros(3)  # A, B, C, degrees
-        self.feed = None
+        self.feed: float | None = None  # mm/s
         self.absolute, self.absolute_centre, self.plane = True, False, PLANES["G17"]
-        self.noted = set()
+        self.noted: set[str] = set()
         for number, command in enumerate(obj.Path.Commands, 1):
             self.command(number, command.Name.upper(), command.Parameters)
 
@@ -132,11 +132,11 @@ class _Commands:
 
     def move(self, number: int, name: str, words: Mapping[str, float]) -> None:
         start, before = self.at.copy(), self.angles.copy()
-        for k, axis in enumerate("XYZ"):
-            if axis in words:
-                self.at[k] = words[axis] + (0.0 if self.absolute else self.at[k])
-        for k, axis in enumerate("ABC"):
-            self.angles[k] = words.get(axis, self.angles[k])
+        for k, word in enumerate("XYZ"):
+            if word in words:
+                self.at[k] = words[word] + (0.0 if self.absolute else self.at[k])
+        for k, word in enumerate("ABC"):
+            self.angles[k] = words.get(word, self.angles[k])
         if not np.isfinite(self.at).all():
             return  # the first commands name one axis after the other
         known = np.isfinite(start).all()
@@ -181,8 +181,9 @@ class _Commands:
             )
             return [], [end]
         if not turning and abs(end[w] - start[w]) < 1e-9:
-            points = arc_through(start, centre, end, normal, full)
-            return [*(np.array(point) for point in points), end], []
+            ends = (start.tolist(), centre.tolist(), end.tolist())
+            through = arc_through(*ends, normal.tolist(), full)
+            return [*(np.array(point) for point in through), end], []
         a, b = start - centre, end - centre
         side_way = np.cross(normal, a)
         angle = math.atan2(float(b @ side_way), float(b @ a)) % (2 * math.pi)

@@ -102,9 +102,9 @@ def make_section(
         found.Label = FreeCAD.Qt.translate("BeltGrinding", "Cross-section")
         found.Simulation = simulation
         found.Point, found.Normal = sections.first_plane(field)
-        if point is not None:
+        if point is not None and normal is not None:
             found.Point, found.Normal = tuple(point), tuple(normal)
-        if start is not None:
+        if start is not None and end is not None:
             found.Start, found.End, found.Cut = tuple(start), tuple(end), sections.LINE
         set_by_name(found, properties)
         job.addObject(found)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -32,7 +32,9 @@ def make_plan(
     label, before = FreeCAD.Qt.translate("BeltGrinding", "Plan"), child(job, planned.Plan)
     obj = make_child(job, planned.Plan, "Plan", label, properties)
     if compute:
-        with nullcontext() if before else removed_on_error(obj):
+        with ExitStack() as undo:
+            if before is None:
+                undo.enter_context(removed_on_error(obj))
             with job_inputs.scratch_folder() as folder:
                 data = job_inputs.to_data(job, folder)
                 work = planned.Work(obj, job)

@@ -89,9 +89,8 @@ def rows(obj: DocumentObject) -> list[Row]:
     found = []
     names = {}
     for kind, name, frame, line in json.loads(obj.Asked or "[]"):
-        row = Row(kind, name, frame, line)
-        names[kind, _key(kind, name)] = row
-        found.append(row)
+        names[kind, _key(kind, name)] = Row(kind, name, frame, line)
+        found.append(names[kind, _key(kind, name)])
     if data.get(UNIT):
         if (UNIT, UNIT) not in names:
             found.append(names.setdefault((UNIT, UNIT), Row(UNIT, UNIT, False)))

@@ -89,6 +89,7 @@ class RobotPath(Proxy):
 
     TYPE = "BeltGrinding::RobotPath"
     VIEW = "RobotPathView"
+    _arrays: dict[str, Array] | None = None  # what ``arrays`` gives, until a list changes
 
     def add_properties(self, obj: DocumentObject) -> None:
         def add(kind: str, name: str, group: str, text: str) -> bool:
@@ -134,10 +135,11 @@ class RobotPath(Proxy):
 
     def arrays(self, obj: DocumentObject) -> dict[str, Array]:
         """dict(frames, feeds, forces, rapid, lines, zones) as core.ToolPath takes them, no overrides."""
-        if getattr(self, "_arrays", None) is None:
+        arrays = self._arrays
+        if arrays is None:
             count = len(obj.Poses)
             rows = [placement.toMatrix().A for placement in obj.Poses]
-            self._arrays = {
+            arrays = self._arrays = {
                 "frames": np.array(rows, dtype=float).reshape(count, 4, 4),
                 "feeds": np.array(obj.Feeds, dtype=float),
                 "forces": np.array(obj.Forces, dtype=float),
@@ -146,13 +148,13 @@ class RobotPath(Proxy):
                 # A document of before there were zones has none.
                 "zones": np.array(obj.Zones or [-1.0] * count, dtype=float),
             }
-        if any(len(a) != len(self._arrays["frames"]) for a in self._arrays.values()):
+        if any(len(one) != len(arrays["frames"]) for one in arrays.values()):
             raise InputError(
                 "objects.lists_differ",
                 "{object}: its lists differ in length; import the program again",
                 object=obj.Label,
             )
-        return self._arrays
+        return arrays
 
     def gaps(self, obj: DocumentObject) -> Array:
         """(n,) int: the line from which on motions are left out before each pose, 0: none."""
@@ -175,7 +177,9 @@ class RobotPath(Proxy):
 
     def _tool_path(self, obj: DocumentObject, feeds: Floats) -> core.ToolPath:
         cell = obj.Machine.Proxy.cell(obj.Machine) if obj.Machine else {}
-        return core.ToolPath(**{**self.arrays(obj), "feeds": feeds}, **cell)
+        held = self.arrays(obj)
+        lists = held["forces"], held["rapid"], held["lines"]
+        return core.ToolPath(held["frames"], feeds, *lists, zones=held["zones"], **cell)
 
     def execute(self, obj: DocumentObject) -> None:
         if obj.SourceObject is not None:
@@ -261,7 +265,7 @@ def read_arrays(
     """
 
     def work(context: Context) -> tuple[Program, dict[str, Array]]:
-        with stoppable(context):
+        with stoppable(context or core.RunContext()):
             program = read_program(path, roll, direction, values)
             return program, program.path_arrays(DEFAULT_FEED)
 
@@ -349,7 +353,7 @@ def write(obj: DocumentObject, file: Path | str, **options: Any) -> Any:
         feeds = np.full(len(feeds), obj.FeedOverride.Value)
     if obj.ForceOverride.Value > 0:
         forces = np.full(len(forces), obj.ForceOverride.getValueAs("N").Value)
-    words = {}
+    words = {"tool": "", "base": ""}
     if obj.Machine is not None and obj.Machine.Robot:
         words = words_of_cell(matrix(obj.Machine.BaseFromRobot), matrix(obj.Machine.FlangeFromTcp))
     motions = [
@@ -360,7 +364,8 @@ def write(obj: DocumentObject, file: Path | str, **options: Any) -> Any:
             obj.Label,
             None if fast else float(feed),
             float(force) if force >= 0 else None,
-            **words,
+            tool=words["tool"],
+            base=words["base"],
         )
         for frame, feed, force, fast, line in zip(
             arrays["frames"], feeds, forces, arrays["rapid"], arrays["lines"]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..base.kinds import Array, Json
+from ..base.kinds import Array, Json, known
 from ..cell import event_lines, events as event_lists
 from ..engine import InputError, core
 from ..job import resolution
@@ -136,7 +136,7 @@ def files_of(result: Result, folder: str | None = None) -> result_files.Written:
         "HeightField": lambda file: result.field.hdf5_into(file, json.dumps(job, allow_nan=False))
     }
     if result.recording is not None:
-        steps = {name: _packed(values) for name, values in result.steps.items()}
+        steps = {name: _packed(values) for name, values in known(result.steps).items()}
         about = json.dumps({"steps": steps}, allow_nan=False)
         files["Recording"] = lambda file: result.recording.hdf5_into(file, about)
     return result_files.Written(files, folder)
@@ -193,12 +193,8 @@ def _store_verdict(obj: DocumentObject, result: Result) -> None:
     """The verdict of the run, and what it takes to judge again."""
     obj.UnresolvedMotions = result.summary.get("unresolved_motions", 0)
     obj.Programs = [program_name(result.job, i) for i in range(len(result.job["programs"]))]
-    motions: Mapping[str, Any] = result.motions or {
-        "program": [],
-        "pose": [],
-        "line": [],
-        "point": [],
-    }
+    none: Mapping[str, Any] = {"program": [], "pose": [], "line": [], "point": []}
+    motions = result.motions if result.motions else none
     for name in ("program", "pose", "line"):
         values = [int(value) for value in motions[name]]
         setattr(obj, f"Motion{name.title()}s", values)

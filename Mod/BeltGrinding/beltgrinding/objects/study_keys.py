@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..base.kinds import Json
+from ..base.kinds import Json, known
 from ..studies import vary
 from ..studies.keys import Key as JobKey
 from . import belt, belt_machine, job_data, stock
@@ -172,8 +172,8 @@ def _put(job: DocumentObject, one: vary.Variable, made: Json) -> None:
     if isinstance(one.key, JobKey):
         programs = PROGRAM.fullmatch(one.key.text)
         if programs is None:
-            obj, key = _holder(job, one.key.text)
-            set_value(obj, key, _value(made, key.key))
+            obj, held = known(_holder(job, one.key.text))
+            set_value(obj, held, _value(made, held.key))
             return
         for k, path in enumerate(children(job, RobotPath)):
             if programs[1] in ("*", str(k)):
@@ -182,7 +182,8 @@ def _put(job: DocumentObject, one: vary.Variable, made: Json) -> None:
                 setattr(path, OF_PROGRAM[programs[2]], scale * value)
         return
     if one.key.startswith(vary.STOCK_PLACEMENT):
-        child(job, Stock).FilePlacement = placement_from_job(made["stock"]["placement"])
+        raw: DocumentObject = child(job, Stock)
+        raw.FilePlacement = placement_from_job(made["stock"]["placement"])
         return
     machine: DocumentObject = child(job, BeltMachine)
     for name, (key, _) in FRAMES.items():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from contextlib import nullcontext
+from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
 import FreeCAD
@@ -37,7 +37,9 @@ def make_study(
     label, before = FreeCAD.Qt.translate("BeltGrinding", "Study"), child(job, studies.Study)
     obj = make_child(job, studies.Study, "Study", label, properties)
     if compute:
-        with nullcontext() if before else removed_on_error(obj):
+        with ExitStack() as undo:
+            if before is None:
+                undo.enter_context(removed_on_error(obj))
             with job_inputs.scratch_folder() as folder:
                 data = job_inputs.to_data(job, folder)
                 obj.Proxy.update(obj)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
 from ...objects.kinds import DocumentObject
 from ..common.compat import QtCore, QtGui, translate
-from ..common.kinds import Array, Painter, QtEvent
+from ..common.kinds import Array, Painter, QtEvent, known
 from ..common.theme import readable, theme
 from .strip_chart import envelope
 
@@ -28,14 +28,19 @@ class FeedChart(QtGui.QWidget):
         self.setObjectName("feedChart")
         self.setMouseTracking(True)
         self.along = np.zeros(0)
-        self.rows, self.chosen, self.begun = [], None, None
+        self.rows: list[tuple[str, str, Array, Array]] = []  # name, unit, before, as planned
+        self.chosen: tuple[int, int] | None = None
+        self.begun: int | None = None  # the motion at which the mouse was pressed
         self.changed = lambda: None
-        self.names, self.of, self.lines = [], np.zeros(0, dtype=int), None
+        self.of = np.zeros(0, dtype=int)  # the path of each motion
+        self.names: list[str] = []  # of the paths
+        self.lines: list[Sequence[int]] = []  # of each path's source; [] without one
 
     def show_plan(self, obj: DocumentObject) -> None:
         """Shows what a Plan object holds."""
         self.along, self.rapid = np.array(obj.Along), np.array(obj.Rapid, dtype=bool)
-        self.of, self.chosen = np.array(obj.PathOf, dtype=int), None
+        self.of = np.array(obj.PathOf, dtype=int)
+        self.chosen = self.begun = None  # a drag that goes on was of the plan before
         document = obj.Document
         paths = [document.getObject(name) for name in obj.Paths]
         self.names = [name if path is None else path.Label for name, path in zip(obj.Paths, paths)]
@@ -96,7 +101,7 @@ class FeedChart(QtGui.QWidget):
     def mouseMoveEvent(self, event: QtEvent) -> None:
         if event.buttons() & QtCore.Qt.LeftButton and self.begun is not None:
             end = self.at(event.pos().x())
-            if end != self.begun:
+            if end is not None and end != self.begun:
                 self.chosen = min(self.begun, end), max(self.begun, end)
                 self.changed()
                 self.update()
@@ -129,7 +134,8 @@ class FeedChart(QtGui.QWidget):
         painter.drawText(QtCore.QPointF(LEFT, self.height() - 5), text)
 
     def _ends(self) -> tuple[int, int]:
-        return self.chosen[0] - 1, self.chosen[1]
+        first, last = known(self.chosen)
+        return first - 1, last
 
     def _draw_row(
         self,

@@ -9,7 +9,18 @@ import numpy as np
 from ...inspection import section_plot
 from ...objects.preferences import deviation_unit, length_text
 from ..common.compat import QtCore, QtGui, translate
-from ..common.kinds import Array, Colour, Json, Painter, Pen, Polygon, QtEvent, QtPoint, Rectangle
+from ..common.kinds import (
+    Array,
+    Colour,
+    Json,
+    Painter,
+    Pen,
+    Polygon,
+    QtEvent,
+    QtPoint,
+    Rectangle,
+    known,
+)
 from ..common.theme import readable, theme
 
 LEFT, RIGHT, TOP, BOTTOM = 64, 12, 28, 40  # pixels around the plot
@@ -32,10 +43,15 @@ class SectionChart(QtGui.QWidget):
         self.setObjectName("sectionPlot")
         self.setMinimumSize(320, 160)
         self.setMouseTracking(True)
-        self.plot = self.section = self.window = self.hovered = self.dragged = None
+        self.plot: Json | None = None
+        self.section: Json | None = None
+        self.window: list[float] | None = None  # x and y from, x and y to
+        self.hovered: tuple[int, int] | None = None  # piece and its point
+        self.dragged: QtPoint | None = None  # where the mouse was
+        self.zoomed = False
 
-    def show_plot(self, section: Json, plot: Json) -> None:
-        """Shows a section; the zoom stays when its kind stays."""
+    def show_plot(self, section: Json | None, plot: Json | None) -> None:
+        """Shows a section, None: that there is none; the zoom stays when its kind stays."""
         same = self.plot is not None and plot is not None and self.plot["mode"] == plot["mode"]
         self.section, self.plot, self.hovered = section, plot, None
         if not same or not self.zoomed:
@@ -57,10 +73,10 @@ class SectionChart(QtGui.QWidget):
 
     def scales(self) -> tuple[float, float, float, float]:
         """(x0, y0 of the lower left in mm, pixels per mm in x and y)."""
-        x0, y0, x1, y1 = self.window
+        x0, y0, x1, y1 = known(self.window)
         area = self.area()
         x, y = area.width() / max(x1 - x0, 1e-9), area.height() / max(y1 - y0, 1e-9)
-        if self.plot["equal"]:
+        if known(self.plot)["equal"]:
             x = y = min(x, y)
             x0 = 0.5 * (x0 + x1) - 0.5 * area.width() / x
             y0 = 0.5 * (y0 + y1) - 0.5 * area.height() / y
@@ -139,18 +155,21 @@ class SectionChart(QtGui.QWidget):
 
     def height_unit(self) -> float:
         """What the upright axis counts in, mm: the outline's true shape stays in mm."""
-        return deviation_unit().size if self.plot["mode"] == section_plot.UNROLLED else 1.0
+        return deviation_unit().size if self._unrolled() else 1.0
+
+    def _unrolled(self) -> bool:
+        return bool(known(self.plot)["mode"] == section_plot.UNROLLED)
 
     def _x_label(self) -> str:
-        if self.plot["mode"] == section_plot.UNROLLED:
+        if self._unrolled():
             text = translate("BeltGrinding", "arc length, mm; upright: height above the design, {}")
             return text.format(deviation_unit().symbol)
-        factor = f"{self.plot['exaggeration']:g}"
+        factor = f"{known(self.plot)['exaggeration']:g}"
         return translate("BeltGrinding", "in the plane, mm; heights ×{}").format(factor)
 
     def _legend(self, painter: Painter) -> None:
         x, metrics = LEFT, QtGui.QFontMetrics(painter.font())
-        for layer in self.plot["layers"]:
+        for layer in known(self.plot)["layers"]:
             text = LABELS[layer["key"]]
             if "polygons" in layer:
                 painter.fillRect(QtCore.QRectF(x, 9, 22, 10), _band(layer))
@@ -165,7 +184,7 @@ class SectionChart(QtGui.QWidget):
         if self.hovered is None:
             return
         piece, k = self.hovered
-        at = self.pixels(self.plot["ground"][piece][k : k + 1])[0]
+        at = self.pixels(known(self.plot)["ground"][piece][k : k + 1])[0]
         painter.setPen(QtGui.QPen(QtGui.QColor("white"), 1.5))
         painter.setBrush(QtGui.QColor(section_plot.LOOKS["ground"][1]))
         painter.drawEllipse(QtCore.QPointF(*at), 4.5, 4.5)
@@ -183,9 +202,9 @@ class SectionChart(QtGui.QWidget):
         painter.setPen(QtGui.QColor(theme().text))
         painter.drawText(box.adjusted(7, 4, -7, -4), int(QtCore.Qt.AlignLeft), text)
 
-    def value_text(self, piece: Json, k: int) -> str:
+    def value_text(self, piece: int, k: int) -> str:
         """What the plot says of point ``k`` of a piece."""
-        one = self.section["pieces"][piece]
+        one = known(self.section)["pieces"][piece]
         x, y, z = one["point"][k]
         lines = [
             translate("BeltGrinding", "Face {}, {:.2f} mm along").format(
@@ -212,7 +231,7 @@ class SectionChart(QtGui.QWidget):
         if self.dragged is not None and event.buttons() & QtCore.Qt.LeftButton:
             _, _, x, y = self.scales()
             dx, dy = (at.x() - self.dragged.x()) / x, (at.y() - self.dragged.y()) / y
-            self.window = [v - d for v, d in zip(self.window, (dx, -dy, dx, -dy))]
+            self.window = [v - d for v, d in zip(known(self.window), (dx, -dy, dx, -dy))]
             self.dragged, self.zoomed = at, True
         self.hovered = self.nearest(at.x(), at.y())
         self.update()
@@ -253,11 +272,11 @@ class SectionChart(QtGui.QWidget):
         section counts alone.
         """
         best, found = math.inf, None
-        for piece, line in enumerate(self.plot["ground"]):
+        for piece, line in enumerate(known(self.plot)["ground"]):
             if np.isnan(line).all():
                 continue
             away = self.pixels(line) - (x, y)
-            if self.plot["mode"] == section_plot.UNROLLED:
+            if self._unrolled():
                 away[:, 1] = np.where(np.isnan(away[:, 1]), np.nan, 0.0)
             distance = np.hypot(*away.T)
             k = int(np.nanargmin(distance))

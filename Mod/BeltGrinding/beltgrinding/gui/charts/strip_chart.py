@@ -9,7 +9,7 @@ import numpy as np
 from ...objects.kinds import Event
 from ..common import event_texts
 from ..common.compat import QtCore, QtGui, translate
-from ..common.kinds import Array, Painter, QtEvent
+from ..common.kinds import Array, Image, Painter, QtEvent
 from ..common.theme import readable, theme
 
 ROWS = (  # column of the steps, unit, colour
@@ -56,7 +56,7 @@ class StripChart(QtGui.QWidget):
             action.setCheckable(True)
             action.setChecked(True)
             action.toggled.connect(lambda _: self._arrange())
-        self.picture = None
+        self.picture: Image | None = None  # all but the cursor, once it is drawn
         self._arrange()
 
     def rows(self) -> list[tuple[str, ...]]:
@@ -103,12 +103,13 @@ class StripChart(QtGui.QWidget):
     def paintEvent(self, event: QtEvent) -> None:
         if self.picture is None:
             ratio = self.devicePixelRatioF()
-            self.picture = QtGui.QPixmap(self.size() * ratio)
-            self.picture.setDevicePixelRatio(ratio)
-            self.picture.fill(QtGui.QColor(theme().ground))
-            painter = QtGui.QPainter(self.picture)
+            picture = QtGui.QPixmap(self.size() * ratio)
+            picture.setDevicePixelRatio(ratio)
+            picture.fill(QtGui.QColor(theme().ground))
+            painter = QtGui.QPainter(picture)
             self._draw(painter)
             painter.end()
+            self.picture = picture
         painter = QtGui.QPainter(self)
         painter.drawPixmap(0, 0, self.picture)
         painter.setPen(QtGui.QPen(QtGui.QColor(CURSOR), 2))
@@ -154,8 +155,8 @@ class StripChart(QtGui.QWidget):
             painter.drawPolyline(QtGui.QPolygonF(points))
         painter.setPen(QtCore.Qt.NoPen)
         painter.setBrush(QtGui.QColor(MARK))
-        for x in sorted({round(self.x(event["time"])) for event in self.events}):
-            corners = ((x - 4, 1), (x + 4, 1), (x, EVENTS - 3))
+        for at in sorted({round(self.x(event["time"])) for event in self.events}):
+            corners = ((at - 4, 1), (at + 4, 1), (at, EVENTS - 3))
             painter.drawPolygon(QtGui.QPolygonF([QtCore.QPointF(*c) for c in corners]))
 
 

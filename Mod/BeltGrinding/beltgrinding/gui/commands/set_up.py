@@ -34,7 +34,7 @@ def new_job() -> DocumentObject | None:
             "gui.select_faces", "Select the faces to be ground, the part, or a mesh, first."
         )
     with transaction(document, translate("BeltGrinding", "New grinding job"), panel=True) as step:
-        job = api.make_job(links, **preferences.job_defaults())
+        job = api.make_job(links, (), **preferences.job_defaults())
         text = translate("BeltGrinding", "Looking at the part for first values")
         job.Proxy.proposed = api.set_up(job, text)
     if step.failed:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-register: Callable[
-    [], None
-] | None = None  # tells FreeCAD the commands, if it does not know them: set by the package itself
+# Tells FreeCAD the commands, if it does not know them; the package itself puts it in.
+register: Callable[[], None]
 
 
 def action(name: str) -> list[Any]:

@@ -11,6 +11,7 @@ from ...base import kinds as plain
 Json: TypeAlias = plain.Json
 Array: TypeAlias = plain.Array
 Context: TypeAlias = plain.Context
+known = plain.known
 
 Widget: TypeAlias = Any  # QWidget
 Layout: TypeAlias = Any  # QLayout

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from ...objects import plan as planned
 from ...objects.kinds import DocumentObject
 from .compat import translate
@@ -33,7 +35,8 @@ class PlanRunner(Runner):
     object is written in one undo step, in the end. Raises InputError for what is missing."""
 
     def __init__(self, obj: DocumentObject, progress: Told, done: Done) -> None:
-        self.plan, self.rounds, self.words = obj.Name, [], words()
+        self.plan, self.words = obj.Name, words()
+        self.rounds: list[dict[str, Any]] = []  # as ``planning`` tells them
         job = obj.getParentGroup()
         self.task = planned.Work(obj, job)
         super().__init__(job, progress, done)

@@ -75,7 +75,13 @@ class Background(QtCore.QObject):
         self.timer.start(POLL)
         if owner is not None:
             myself = weakref.ref(self)  # the owner may outlast it
-            owner.destroyed.connect(lambda *_: myself() and myself().abandon())
+
+            def gone(*_: object) -> None:
+                background = myself()
+                if background is not None:
+                    background.abandon()
+
+            owner.destroyed.connect(gone)
 
     def cancel(self) -> None:
         """Asks the work to end; ``done`` follows with Cancelled."""
@@ -159,10 +165,15 @@ class Runner(Background):
         except ReferenceError:
             return None
 
-    def abandon(self) -> None:
+    def abandon(self, then: Callable[[], object] = lambda: None) -> None:
         """Cancels, and stores nothing even if the run has just ended."""
         self.progress = lambda _: None
-        super().abandon(self.folder.cleanup)
+
+        def end() -> None:
+            self.folder.cleanup()
+            then()
+
+        super().abandon(end)
 
     def _poll(self) -> None:
         if self.job() is None:
@@ -205,7 +216,7 @@ class Runner(Background):
     ) -> None:
         """``store(job, obj)`` for the object called ``name`` that is made out of a run, in one undo step."""
         job = self.job()
-        obj = None if job is None else self.document.getObject(name)
+        obj: DocumentObject = None if job is None else self.document.getObject(name)
         if obj is None:
             raise Cancelled(translate("BeltGrinding", "the job was removed while it ran"))
 

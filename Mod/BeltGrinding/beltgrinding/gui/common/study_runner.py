@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from ...objects import study as studies
 from ...objects.kinds import DocumentObject
 from .compat import translate
@@ -17,7 +15,8 @@ class StudyRunner(Runner):
     """
 
     def __init__(self, obj: DocumentObject, progress: Told, done: Done) -> None:
-        self.study, self.told = obj.Name, None
+        self.study = obj.Name
+        self.told: studies.making.Progress | None = None
         job = obj.getParentGroup()
         self.task = studies.Work(obj, job)
         super().__init__(job, progress, done)
@@ -25,7 +24,7 @@ class StudyRunner(Runner):
     def work(self, context: Context) -> studies.Found:
         return self.task.find(self.data, context, self._tell)
 
-    def _tell(self, progress: Any) -> None:
+    def _tell(self, progress: studies.making.Progress) -> None:
         self.told = progress
 
     def _store(self, found: studies.Found) -> studies.Found:

@@ -6,21 +6,29 @@ from typing import Any
 
 import FreeCADGui as Gui
 
+from ...base.kinds import known
 from ...objects.kinds import DocumentObject
 from ..common.compat import QtCore, QtGui
 
 
 class ObjectDock(QtGui.QDockWidget):
     """Base. What it shows, ``obj``, is the object that was opened last, None before. Subclasses have
-    ``refresh()``, which shows it as it is now, and call ``place`` once they are filled.
+    ``NAME``, ``title()``, and ``refresh()``, which shows it as it is now, and call ``place`` once they
+    are filled.
     """
 
-    _made = {}  # kind -> the one dock
+    NAME: str  # the dock's object name
+    _made: dict[type[ObjectDock], ObjectDock] = {}  # kind -> the one dock
 
-    def __init__(self, title: str, name: str) -> None:
-        super().__init__(title, Gui.getMainWindow())
-        self.setObjectName(name)
-        self.obj = None
+    def __init__(self) -> None:
+        super().__init__(self.title(), Gui.getMainWindow())
+        self.setObjectName(self.NAME)
+        self.obj: DocumentObject | None = None
+
+    @staticmethod
+    def title() -> str:
+        """What the dock is called before it shows an object."""
+        raise NotImplementedError
 
     @classmethod
     def open(cls, obj: DocumentObject) -> ObjectDock:
@@ -54,9 +62,14 @@ class ObjectDock(QtGui.QDockWidget):
     def refresh(self) -> None:
         raise NotImplementedError
 
-    def alive(self) -> bool:
-        """Whether the object shown is still in its document."""
+    def shown(self) -> DocumentObject:
+        """The object shown, for what can be asked of one alone."""
+        return known(self.obj)
+
+    def living(self) -> DocumentObject | None:
+        """The object shown, None once it is no longer in its document."""
+        obj = self.obj
         try:
-            return self.obj is not None and self.obj.Document.getObject(self.obj.Name) is not None
+            return obj if obj is not None and obj.Document.getObject(obj.Name) is not None else None
         except (ReferenceError, RuntimeError):
-            return False
+            return None

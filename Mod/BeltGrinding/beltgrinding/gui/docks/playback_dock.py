@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping
 import FreeCAD
 import FreeCADGui as Gui
 
+from ...base.kinds import known
 from ...engine import Cancelled, InputError, core
 from ...objects import job_data
 from ...objects.kinds import Document, DocumentObject
@@ -37,8 +38,9 @@ class Playback(QtGui.QDockWidget):
         self.setObjectName("BeltGrinding_PlaybackDock")
         self.setAttribute(QtCore.Qt.WA_DeleteOnClose)
         self.document, self.name = job.Document, job.Name
-        self.scene = self.runner = self.stale = None
-        self.waiting = set()  # what is to be done once FreeCAD has done its own
+        self.scene: Scene | None = None
+        self.runner: Runner | None = None
+        self.waiting: set[str] = set()  # what is to be done once FreeCAD has done its own
         self.clock = QtCore.QTimer(self)
         self.clock.setInterval(TICK)
         self.clock.timeout.connect(self._tick)
@@ -71,7 +73,7 @@ class Playback(QtGui.QDockWidget):
             self.setWidget(self._offer(simulation))
             self.state.setText(error_text(error))
             return
-        self.setWidget(self._controls(simulation, found[1]))
+        self.setWidget(self._controls(simulation, found[1], self.scene))
         self.go(0.0)
 
     def _offer(self, simulation: DocumentObject) -> Widget:
@@ -92,7 +94,7 @@ class Playback(QtGui.QDockWidget):
         self.record.clicked.connect(self.simulate)
         self.cancel = QtGui.QPushButton(translate("BeltGrinding", "Cancel"))
         self.cancel.setObjectName("cancelRecording")
-        self.cancel.clicked.connect(lambda: self.runner and self.runner.cancel())
+        self.cancel.clicked.connect(lambda *_: self._stop())
         self.cancel.hide()
         row = QtGui.QHBoxLayout()
         for widget in (self.record, self.bar, self.cancel):
@@ -114,6 +116,10 @@ class Playback(QtGui.QDockWidget):
         self.bar.show()
         self.cancel.show()
 
+    def _stop(self) -> None:
+        if self.runner is not None:
+            self.runner.cancel()
+
     def _progress(self, share: float) -> None:
         self.bar.setValue(int(1000 * share))
 
@@ -133,7 +139,9 @@ class Playback(QtGui.QDockWidget):
                 translate("BeltGrinding", "Cancelled.") if cancelled else error_text(error)
             )
 
-    def _controls(self, simulation: DocumentObject, steps: Mapping[str, Array]) -> Widget:
+    def _controls(
+        self, simulation: DocumentObject, steps: Mapping[str, Array], scene: Scene
+    ) -> Widget:
         panel = QtGui.QWidget()
         body = QtGui.QVBoxLayout(panel)
         row = QtGui.QHBoxLayout()
@@ -170,11 +178,11 @@ class Playback(QtGui.QDockWidget):
         row.addWidget(self.label)
         self.moving = QtGui.QCheckBox(translate("BeltGrinding", "Show the cell as it moves"))
         self.moving.setObjectName("playbackMoves")
-        self.moving.setEnabled(self.scene.cell.cell()["holding"] == "part_in_hand")
-        self.moving.toggled.connect(self.scene.cell.set_moving)
+        self.moving.setEnabled(scene.cell.cell()["holding"] == "part_in_hand")
+        self.moving.toggled.connect(scene.cell.set_moving)
         row.addWidget(self.moving)
         self.events = simulation.Proxy.events(simulation)
-        self.chart = StripChart(steps, self.events, self.scene.duration)
+        self.chart = StripChart(steps, self.events, scene.duration)
         self.chart.chosen = self.scrub
         choice = QtGui.QToolButton()
         choice.setText(translate("BeltGrinding", "Rows"))
@@ -196,7 +204,8 @@ class Playback(QtGui.QDockWidget):
         if self.clock.isActive():
             self.pause()
             return
-        if self.scene.time >= self.scene.duration - SAME:
+        scene = known(self.scene)
+        if scene.time >= scene.duration - SAME:
             self.go(0.0)
         self.last = time.monotonic()
         self.clock.start()
@@ -214,7 +223,7 @@ class Playback(QtGui.QDockWidget):
     def step(self, way: int) -> None:
         """Goes to the next event (``way`` 1) or to the one before (-1)."""
         times = sorted(event["time"] for event in self.events)
-        now = self.scene.time
+        now = known(self.scene).time
         if way > 0:
             found = [t for t in times if t > now + SAME][:1]
         else:
@@ -224,30 +233,31 @@ class Playback(QtGui.QDockWidget):
 
     def go(self, moment: float) -> None:
         """Shows the moment, s since the begin of the first program."""
-        self.scene.go(moment)
+        scene = known(self.scene)
+        scene.go(moment)
         self.slider.blockSignals(True)
-        self.slider.setValue(round(PARTS * self.scene.time / max(self.scene.duration, SAME)))
+        self.slider.setValue(round(PARTS * scene.time / max(scene.duration, SAME)))
         self.slider.blockSignals(False)
-        self.chart.set_time(self.scene.time)
+        self.chart.set_time(scene.time)
         text = translate("BeltGrinding", "{:.2f} of {:.2f} s · {}, pose {}")
-        label, pose, line = self.scene.place
-        text = text.format(self.scene.time, self.scene.duration, label, pose + 1)
+        label, pose, line = scene.place
+        text = text.format(scene.time, scene.duration, label, pose + 1)
         if line:
             text += translate("BeltGrinding", ", line {}").format(line)
         self.label.setText(text)
 
     def _slid(self, value: int) -> None:
-        self.scrub(self.scene.duration * value / PARTS)
+        self.scrub(known(self.scene).duration * value / PARTS)
 
     def _tick(self) -> None:
         if self.job() is None:
             self.close()
             return
-        now = time.monotonic()
-        moment = self.scene.time + (now - self.last) * self.speed.currentData()
+        scene, now = known(self.scene), time.monotonic()
+        moment = scene.time + (now - self.last) * self.speed.currentData()
         self.last = now
         self.go(moment)
-        if moment >= self.scene.duration:
+        if moment >= scene.duration:
             self.pause()
 
     def slotChangedObject(self, obj: DocumentObject, name: str) -> None:

@@ -32,9 +32,13 @@ HEIGHT = 330  # pixels of the dock as it comes
 class SectionDock(ObjectDock):
     """Shows a Section object."""
 
+    NAME = "BeltGrinding_SectionDock"
+
     def __init__(self) -> None:
-        super().__init__(translate("BeltGrinding", "Cross-section"), "BeltGrinding_SectionDock")
-        self.quiet, self.picks, self.picking = False, [], []
+        super().__init__()
+        self.quiet = False
+        self.picks: list[Point] = []
+        self.picking: list[tuple[View3D, Any]] = []  # views, and their callbacks
         self.opened = False  # an undo step of ours
         self.low, self.high = 0.0, 0.0  # of the surface along the plane's normal, mm
         body = QtGui.QWidget()
@@ -50,6 +54,10 @@ class SectionDock(ObjectDock):
         self._add_controls()
         self.place(QtCore.Qt.BottomDockWidgetArea, HEIGHT)
         FreeCAD.addDocumentObserver(self)
+
+    @staticmethod
+    def title() -> str:
+        return translate("BeltGrinding", "Cross-section")
 
     def _add_controls(self) -> None:
         self.kind = self._combo(
@@ -130,9 +138,7 @@ class SectionDock(ObjectDock):
 
     def refresh(self) -> None:
         """Shows the object as it is now."""
-        if not self.alive():
-            self.obj = None
-        obj = self.obj
+        obj = self.obj = self.living()
         for widget in (self.kind, self.slider, self.offset, self.pick, self.mode, self.factor):
             widget.setEnabled(obj is not None)
         if obj is None:
@@ -211,44 +217,48 @@ class SectionDock(ObjectDock):
 
     def _open(self) -> None:
         """Opens an undo step, unless the document has one: an open panel's, which is not ours."""
-        if self.alive() and not self.obj.Document.HasPendingTransaction:
-            self.obj.Document.openTransaction(translate("BeltGrinding", "Move cross-section"))
+        obj = self.living()
+        if obj is not None and not obj.Document.HasPendingTransaction:
+            obj.Document.openTransaction(translate("BeltGrinding", "Move cross-section"))
             self.opened = True
 
     def _released(self) -> None:
-        if self.alive():
-            self.obj.Document.recompute()
-            self._commit()
+        obj = self.living()
+        if obj is not None:
+            obj.Document.recompute()
+            self._commit(obj)
 
-    def _commit(self) -> None:
+    def _commit(self, obj: DocumentObject) -> None:
         if self.opened and not self.slider.isSliderDown():
-            self.obj.Document.commitTransaction()
+            obj.Document.commitTransaction()
             self.opened = False
 
     def change(self, **values: Any) -> None:
         """Sets properties of the object, as one undo step (a drag of the slider is one, too)."""
-        if self.quiet or not self.alive():
+        obj = self.living()
+        if self.quiet or obj is None:
             return
         self._open()
         self.quiet = True
         try:
             for name, value in values.items():
-                setattr(self.obj, name, value)
+                setattr(obj, name, value)
             if self.slider.isSliderDown():
-                self.obj.Proxy.update(self.obj)  # the rest of the document when it is let go
+                obj.Proxy.update(obj)  # the rest of the document when it is let go
             else:
-                self.obj.Document.recompute()
+                obj.Document.recompute()
         finally:
             self.quiet = False
-        self._commit()
+        self._commit(obj)
         self.refresh()
 
     def _kind_chosen(self, index: int) -> None:
-        if self.quiet or not self.alive():
+        obj = self.living()
+        if self.quiet or obj is None:
             return
         if index < 3:
-            point, normal = self.obj.Point, list(AXES.values())[index]
-            field = field_of(self.obj.Simulation)
+            point, normal = obj.Point, list(AXES.values())[index]
+            field = field_of(obj.Simulation)
             if field is not None:
                 point = objects.middle_of_ground(field)
             self.change(Cut=objects.PLANE, Point=point, Normal=normal)
@@ -266,9 +276,10 @@ class SectionDock(ObjectDock):
             self._move_to(value)
 
     def _move_to(self, value: float) -> None:
-        if not self.alive():
+        obj = self.living()
+        if obj is None:
             return
-        normal, point = (np.array(v, dtype=float) for v in (self.obj.Normal, self.obj.Point))
+        normal, point = (np.array(v, dtype=float) for v in (obj.Normal, obj.Point))
         normal /= np.linalg.norm(normal)
         self.change(Point=tuple((point + (value - normal @ point) * normal).tolist()))
 
@@ -278,9 +289,10 @@ class SectionDock(ObjectDock):
         if not on:
             return self._stop_picking()
         self.picks = []
-        if not self.alive():
+        obj = self.living()
+        if obj is None:
             return
-        document = Gui.getDocument(self.obj.Document.Name)
+        document = Gui.getDocument(obj.Document.Name)
         for view in document.mdiViewsOfType("Gui::View3DInventor"):
             call = view.addEventCallback(
                 "SoMouseButtonEvent", lambda event, view=view: self._clicked(view, event)
@@ -320,17 +332,18 @@ class SectionDock(ObjectDock):
 
     def export(self, kind: str) -> None:
         """Asks for a file and writes the section as "csv" or "svg"."""
-        if not self.alive():
+        obj = self.living()
+        if obj is None:
             return
         path = file_to_write(
             translate("BeltGrinding", "Export cross-section"),
-            f"{self.obj.Label}.{kind}",
+            f"{obj.Label}.{kind}",
             f"{kind.upper()} (*.{kind})",
         )
         if not path:
             return
         try:
-            section = self.obj.Proxy.cut(self.obj)
+            section = obj.Proxy.cut(obj)
             if kind == "csv":
                 sections.write_csv(section, path)
             else:
@@ -356,12 +369,12 @@ class SectionDock(ObjectDock):
             self._forget()
 
     def slotDeletedDocument(self, document: Document) -> None:
-        if self.obj is not None and not self._of_another(document):
+        if not self._of_another(document):
             self._forget()
 
     def _of_another(self, document: Document) -> bool:
         try:
-            return self.obj.Document != document
+            return self.obj is None or self.obj.Document != document
         except (ReferenceError, RuntimeError):
             return False
 

@@ -4,53 +4,47 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import FreeCAD
 import FreeCADGui as Gui
 
 from ...base.files import cannot_be_written, write_whole
+from ...base.kinds import known
 from ...base.messages import sentence
 from ...engine import InputError
 from ...objects import api, stored_facts
 from ...objects.kinds import Document, DocumentObject
 from ...studies import names, report, table as tables
 from ..common.compat import QtCore, QtGui, translate
-from ..common.kinds import Json, TableItem, Widget
+from ..common.kinds import Json, Widget
 from ..common.messages import error_text, inform, tell
 from ..common.report_language import language, words
 from ..common.save_dialog import file_to_write
-from ..common.theme import theme
 from ..common.transaction import transaction
 from ..panels.study_panel import StudyPanel
 from ..widgets.picture_label import PictureLabel
 from .object_dock import ObjectDock
+from .study_cells import NUMBER, cell
 
 HEIGHT = 300  # pixels of the dock as it comes
 SHARES = [620, 460]  # of table and charts, side by side
 DPI = 100
 LARGE = 0.9  # of the screen
 HIDDEN = (tables.HASH,)
-NUMBER = QtCore.Qt.UserRole
 MOST_WARNINGS = 4  # lines above the table; all are in the tip
-
-
-class _Cell(QtGui.QTableWidgetItem):
-    """Sorted by number where it is one; empty ones come last."""
-
-    def __lt__(self, other: TableItem) -> bool:
-        mine, its = self.data(NUMBER), other.data(NUMBER)
-        if mine is None or its is None:
-            return (mine is None, self.text()) < (its is None, other.text())
-        return mine < its
 
 
 class StudyDock(ObjectDock):
     """Shows a Study object."""
 
+    NAME = "BeltGrinding_StudyDock"
+
     def __init__(self) -> None:
-        super().__init__(translate("BeltGrinding", "Study"), "BeltGrinding_StudyDock")
-        self.table = self.answers = None
+        super().__init__()
+        self.table: tables.Table | None = None
+        self.answers: Json | None = None
         self.texts = words()
         parts = QtGui.QSplitter(QtCore.Qt.Horizontal)
         left, layout = QtGui.QWidget(), QtGui.QVBoxLayout()
@@ -95,6 +89,10 @@ class StudyDock(ObjectDock):
         self.place(QtCore.Qt.BottomDockWidgetArea, HEIGHT)
         FreeCAD.addDocumentObserver(self)
 
+    @staticmethod
+    def title() -> str:
+        return translate("BeltGrinding", "Study")
+
     def _charts(self) -> Widget:
         side, layout = QtGui.QWidget(), QtGui.QVBoxLayout()
         side.setLayout(layout)
@@ -138,18 +136,18 @@ class StudyDock(ObjectDock):
 
     def refresh(self) -> None:
         """Shows the object as it is now."""
-        if not self.alive():
+        obj = self.living()
+        if obj is None:
             self._clear()
             return
         try:
-            self.table = self.obj.Proxy.table(self.obj)
-            self.answers = self.obj.Proxy.answers(self.obj)
+            self.table, self.answers = obj.Proxy.table(obj), obj.Proxy.answers(obj)
         except InputError as error:
             self.table = self.answers = None
             self.told.setText(error_text(error))
         self._fill()
-        self._tell()
-        self._warn()
+        self._tell(obj)
+        self._warn(obj)
         before = self.figure.blockSignals(True)
         chosen = self.figure.currentData()
         self.figure.clear()
@@ -175,7 +173,7 @@ class StudyDock(ObjectDock):
         if made is None:
             self.rows.setRowCount(0)
             return
-        first = [tables.RUN, tables.STATUS, *made.varied]
+        first = [tables.RUN, tables.STATUS, *known(made.varied)]
         shown = first + [n for n in made.names if n not in (*first, *HIDDEN)]
         shown = [n for n in shown if n != tables.ERROR or (made[tables.STATUS] == "error").any()]
         self.rows.setColumnCount(len(shown))
@@ -185,7 +183,7 @@ class StudyDock(ObjectDock):
             head.setToolTip(name)
             self.rows.setHorizontalHeaderItem(column, head)
             for row, value in enumerate(made[name].tolist()):
-                self.rows.setItem(row, column, self._cell(name, value, row))
+                self.rows.setItem(row, column, cell(made, name, value, row))
         self.rows.resizeColumnsToContents()
         self.rows.setSortingEnabled(True)
         self.rows.sortByColumn(0, QtCore.Qt.AscendingOrder)
@@ -196,46 +194,11 @@ class StudyDock(ObjectDock):
             tables.STATUS: translate("BeltGrinding", "State"),
             tables.ERROR: translate("BeltGrinding", "Why"),
         }
-        if name in heads or name in made.varied:
+        if name in heads or name in known(made.varied):
             return heads.get(name, name)
         return names.figure(name, self.texts)
 
-    def _cell(self, name: str, value: Any, row: int) -> TableItem:
-        number = isinstance(value, (int, float)) and not isinstance(value, bool)
-        if value is None or value != value:
-            cell = _Cell("")
-        elif number:
-            cell = _Cell(f"{value:.5g}" if isinstance(value, float) else str(value))
-            cell.setData(NUMBER, float(value))
-            cell.setTextAlignment(QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter)
-            cell.setToolTip(repr(value))
-        else:
-            cell = _Cell(self._word(name, str(value)))
-            cell.setToolTip(str(value))
-        if self.table[tables.STATUS][row] == tables.FAILED:
-            cell.setForeground(QtGui.QColor(theme().warning))
-            cell.setToolTip(str(self.table[tables.ERROR][row]))
-        elif name == "overall" and value == "fail":
-            cell.setForeground(QtGui.QColor(theme().warning))
-        return cell
-
-    def _word(self, name: str, text: Any) -> str:
-        if name == tables.STATUS:
-            return {
-                tables.DONE: translate("BeltGrinding", "done"),
-                tables.FAILED: translate("BeltGrinding", "failed"),
-                tables.OPEN: translate("BeltGrinding", "open"),
-            }.get(text, text)
-        if name == "overall" or name.endswith(".verdict"):
-            return {
-                "pass": translate("BeltGrinding", "pass"),
-                "fail": translate("BeltGrinding", "fail"),
-                "unknown": translate("BeltGrinding", "unknown"),
-            }.get(text, text)
-        return text
-
-    def _tell(self) -> None:
-        obj = self.obj
+    def _tell(self, obj: DocumentObject) -> None:
         if obj.OutOfDate:
             self.told.setText(
                 translate("BeltGrinding", "Out of date: an input has changed since; run again.")
@@ -261,13 +224,13 @@ class StudyDock(ObjectDock):
             lines.append(text.format(obj.OpenedRun))
         self.told.setText(", ".join(lines))
 
-    def _warn(self) -> None:
+    def _warn(self, obj: DocumentObject) -> None:
         """What the user should know of the runs and of their answers."""
-        lines = stored_facts.sentences(self.obj, "Warnings", language(), alike=True)
+        lines = stored_facts.sentences(obj, "Warnings", language(), alike=True)
         lines += [sentence(one, language()) for one in (self.answers or {}).get("note_facts", ())]
         self.warnings.setText("\n".join(lines[:MOST_WARNINGS]))
         self.warnings.setToolTip("\n".join(lines))
-        self.warnings.setVisible(bool(lines) and not self.obj.OutOfDate)
+        self.warnings.setVisible(bool(lines) and not obj.OutOfDate)
 
     def _draw(self) -> None:
         """The chosen chart of the chosen figure."""
@@ -289,12 +252,12 @@ class StudyDock(ObjectDock):
 
     def _chart(self, kind: str, name: str | None, dpi: int) -> bytes | None:
         """Bytes of a picture; None where there is none, and the note says why."""
+        answers = known(self.answers)
         if kind == "sobol" and name is not None:
-            found = self.answers["figures"][name]["sobol"]
+            found = answers["figures"][name]["sobol"]
             told = [found[key] for key in ("reason", "doubt") if key in found]
             self._note("\n".join(sentence(one, language()) for one in told))
-        drawn = report.one(self.answers, self.table, kind, name, self.texts, dpi)
-        return drawn
+        return report.one(answers, known(self.table), kind, name, self.texts, dpi)
 
     def enlarge(self) -> None:
         """The chart in a window of its own."""
@@ -325,16 +288,16 @@ class StudyDock(ObjectDock):
 
     def open_row(self) -> None:
         """Sets the document to the chosen run, in one undo step."""
-        row = self.rows.currentRow()
-        if row < 0 or not self.alive():
+        row, obj = self.rows.currentRow(), self.living()
+        if row < 0 or obj is None:
             return
         number = int(self.rows.item(row, 0).data(NUMBER))
         title = translate("BeltGrinding", "Set to run {}").format(number)
-        with transaction(self.obj.Document, title) as step:
-            left, laid_anew = api.open_study_run(self.obj, number)
+        with transaction(obj.Document, title) as step:
+            left, laid_anew = api.open_study_run(obj, number)
         if step.failed:
             return
-        self._tell()
+        self._tell(obj)
         told = []
         if left:
             text = translate(
@@ -354,30 +317,31 @@ class StudyDock(ObjectDock):
         """The table as a CSV file."""
         self._write(
             translate("BeltGrinding", "Save table"),
-            f"{self.obj.Label}.csv",
+            f"{self.shown().Label}.csv",
             "CSV (*.csv)",
-            self.table.csv_bytes,
+            known(self.table).csv_bytes,
         )
 
     def write_report(self) -> None:
         """The answers as a report, in one HTML file."""
 
         def content() -> bytes:
-            drawn = report.draw(self.answers, self.table, self.texts)
-            job = self.obj.getParentGroup()
-            held = {"vary": json.loads(self.obj.Design)["vary"]}
+            answers, obj = known(self.answers), self.shown()
+            drawn = report.draw(answers, known(self.table), self.texts)
+            job = obj.getParentGroup()
+            held = {"vary": json.loads(obj.Design)["vary"]}
             held["job"] = {"design": {"file": job.Label}}
-            return report.document(self.answers, held, drawn, self.texts).encode()
+            return report.document(answers, held, drawn, self.texts).encode()
 
         title = translate("BeltGrinding", "Report of the study")
-        self._write(title, f"{self.obj.Label}.html", "HTML (*.html)", content)
+        self._write(title, f"{self.shown().Label}.html", "HTML (*.html)", content)
 
     def _write(self, title: str, name: str, kinds: str, content: Callable[[], bytes]) -> None:
         path = file_to_write(title, name, kinds)
         if not path:
             return
         try:
-            write_whole(path, content())
+            write_whole(Path(path), content())
         except OSError as error:
             tell(error_text(cannot_be_written(path, error)))
         except InputError as error:
@@ -386,10 +350,10 @@ class StudyDock(ObjectDock):
     # Of the document
 
     def slotChangedObject(self, obj: DocumentObject, name: str) -> None:
-        if self.obj is None or not self.alive() or obj is not self.obj:
+        if obj is not self.obj or self.living() is None:
             return
         if name in ("OutOfDate", "OpenedRun"):
-            self._tell()
+            self._tell(obj)
         elif name == "Fingerprint" and obj.Fingerprint:
             QtCore.QTimer.singleShot(0, self.refresh)
 
@@ -411,7 +375,7 @@ class StudyDock(ObjectDock):
         self.hide()
 
 
-def _best(found: Json) -> list[str]:
+def _best(found: Json | None) -> list[str]:
     """What is said of the best setting, in a list."""
     if found is None:
         return []

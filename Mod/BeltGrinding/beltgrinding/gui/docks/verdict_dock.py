@@ -8,15 +8,16 @@ import FreeCAD
 import FreeCADGui as Gui
 import numpy as np
 
+from ...base.kinds import known
 from ...objects import api, raster_path, verdict as objects
 from ...objects.belt_machine import half_size
 from ...objects.job_data import children, face_name
-from ...objects.kinds import Document, DocumentObject
+from ...objects.kinds import Document, DocumentObject, Field
 from ...objects.robot_path import RobotPath
 from ...objects.fields import forget_field
 from ..common.compat import QtCore, QtGui, translate
 from ..common.event_texts import errors
-from ..common.kinds import QtEvent, Widget
+from ..common.kinds import Array, Json, QtEvent, Widget
 from ..common.theme import warning_style
 from ..common.verdict_words import headline
 from ..scene.cell_view import CellView
@@ -38,11 +39,17 @@ COLOURS = {"pass": "#1b5e20", "fail": "#b3261e", "unknown": "#8a6d00"}
 class VerdictDock(ObjectDock):
     """Shows a Verdict object."""
 
+    NAME = "BeltGrinding_VerdictDock"
+
     def __init__(self) -> None:
-        super().__init__(translate("BeltGrinding", "Verdict"), "BeltGrinding_VerdictDock")
-        self.found = self.scene = self.wheel = None
-        self.field = self.cluster_of = None
-        self.shown_path = self.sight = None
+        super().__init__()
+        self.found: Json | None = None  # the verdict, as a job's has it
+        self.field: Field | None = None
+        self.cluster_of: Array | None = None  # of each sample, from 0
+        self.scene: VerdictScene | None = None
+        self.wheel: CellView | None = None
+        self.sight: Sight | None = None
+        self.shown_path: DocumentObject | None = None
         body = QtGui.QWidget()
         layout = QtGui.QVBoxLayout(body)
         self.overall = QtGui.QLabel()
@@ -79,7 +86,7 @@ class VerdictDock(ObjectDock):
             (translate("BeltGrinding", "Zones and faces"), self.regions),
             (translate("BeltGrinding", "Clusters out of tolerance"), self.clusters),
             (translate("BeltGrinding", "Motions of the cluster"), self.motions),
-            (None, self.poses),
+            ("", self.poses),
         ):
             parts.addWidget(_titled(title, widget))
         parts.setSizes(SHARES)
@@ -102,6 +109,10 @@ class VerdictDock(ObjectDock):
         self.place(QtCore.Qt.RightDockWidgetArea, WIDTH)
         FreeCAD.addDocumentObserver(self)
 
+    @staticmethod
+    def title() -> str:
+        return translate("BeltGrinding", "Verdict")
+
     # What is shown
 
     def show_object(self, obj: DocumentObject) -> None:
@@ -111,9 +122,9 @@ class VerdictDock(ObjectDock):
 
     def refresh(self) -> None:
         """Shows the object as it is now."""
-        if not self.alive():
+        obj = self.living()
+        if obj is None:
             return self._forget()
-        obj = self.obj
         self.found = obj.Proxy.data(obj)
         self.cluster_of = None
         self._unmark()
@@ -137,16 +148,19 @@ class VerdictDock(ObjectDock):
             text = translate("BeltGrinding", "Out of date: simulate again.") + "\n" + text
         self.figures.setText(text)
         self.figures.setVisible(bool(text))
-        self._fill_tables()
+        self._fill_tables(self.found)
 
-    def _fill_tables(self) -> None:
-        job = self.obj.getParentGroup()
+    def _job(self) -> DocumentObject:
+        return self.shown().getParentGroup()
+
+    def _fill_tables(self, found: Json) -> None:
+        job = self._job()
         name = lambda face: face_name(job, face - 1) or f"Face{face}"  # noqa: E731
         self.shown_regions = [
-            (region, cells, bad) for region, cells, bad in region_rows(self.found, name)
+            (region, cells, bad) for region, cells, bad in region_rows(found, name)
         ]
         fill(self.regions, [(cells, bad) for _, cells, bad in self.shown_regions])
-        fill(self.clusters, cluster_rows(self.found, name))
+        fill(self.clusters, cluster_rows(found, name))
         self.motions.setRowCount(0)
 
     # Going there
@@ -155,8 +169,9 @@ class VerdictDock(ObjectDock):
         """Looks at the worst place of a face or a zone."""
         if 0 <= row < len(self.shown_regions):
             worst = self.shown_regions[row][0]["worst"]
-            if worst is not None and self._read_field():
-                self._sight().at_samples(self.field, [worst["sample"]], LEAST_SEEN * 2.0)
+            field = None if worst is None else self._read_field()
+            if field is not None:
+                self._sight().at_samples(field, [worst["sample"]], LEAST_SEEN * 2.0)
 
     def go_to_cluster(self, row: int) -> None:
         """Looks at a cluster, marks it, and lists its motions."""
@@ -166,19 +181,20 @@ class VerdictDock(ObjectDock):
         self.here.setEnabled(cluster["side"] == "above")
         fill(self.motions, motion_rows(cluster, self.found["programs"]))
         self._show_wheel(None, 0)
-        if not self._read_field():
+        field, obj = self._read_field(), self.shown()
+        if field is None:
             return
         if self.cluster_of is None:
-            job = self.obj.getParentGroup()
-            self.field, self.cluster_of = objects.cluster_of_samples(job, self.obj.Simulation)
+            field, self.cluster_of = objects.cluster_of_samples(self._job(), obj.Simulation)
+            self.field = field
         if self.scene is None:
-            self.scene = VerdictScene(self.obj.Document)
+            self.scene = VerdictScene(obj.Document)
         inside = self.cluster_of == row
-        self.scene.show(self.field, inside, cluster["worst"]["sample"])
+        self.scene.show(field, inside, cluster["worst"]["sample"])
         middle = np.mean(cluster["box_mm"], axis=0)
         size = max(AROUND * cluster["extent_mm"], LEAST_SEEN)
         samples = [cluster["worst"]["sample"], *np.flatnonzero(inside)]
-        self._sight().at_samples(self.field, samples, size, middle)
+        self._sight().at_samples(field, samples, size, middle)
 
     def lay_here(self) -> None:
         """A raster path on the cluster that is chosen, in its panel."""
@@ -188,8 +204,8 @@ class VerdictDock(ObjectDock):
         row = self.clusters.currentRow()
         if self.cluster_of is None or row < 0:
             return
-        job = self.obj.getParentGroup()
-        points = self.field.points[self.cluster_of == row]
+        job = self._job()
+        points = known(self.field).points[self.cluster_of == row]
         points = points[:: max(1, len(points) // MOST_POINTS)]
         text = translate("BeltGrinding", "Raster path")
         with transaction(job.Document, text, panel=True) as step:
@@ -199,14 +215,14 @@ class VerdictDock(ObjectDock):
         if not step.failed:
             edit(path)
 
-    def _read_field(self) -> bool:
+    def _read_field(self) -> Field | None:
         if self.field is None:
-            self.field = objects.field_of(self.obj.Simulation)
-        return self.field is not None
+            self.field = objects.field_of(self.shown().Simulation)
+        return self.field
 
     def _sight(self) -> Sight:
         if self.sight is None:
-            self.sight = Sight(self.obj.getParentGroup())
+            self.sight = Sight(self._job())
         return self.sight
 
     # Motions
@@ -221,7 +237,7 @@ class VerdictDock(ObjectDock):
             return None, None
         motion = motions[row]
         name = self.found["programs"][motion["program"]]["name"]
-        paths = children(self.obj.getParentGroup(), RobotPath)
+        paths = children(self._job(), RobotPath)
         named = [path for path in paths if path.Label == name]
         at = motion["program"]
         if at < len(paths) and (paths[at].Label == name or not named):
@@ -234,10 +250,11 @@ class VerdictDock(ObjectDock):
         if path is None or motion["pose"] >= path.PoseCount:
             return self._show_wheel(None, 0)
         self._show_wheel(path, motion["pose"])
-        contact = self.wheel.frames()["contact"]
+        wheel = known(self.wheel)
+        contact = wheel.frames()["contact"]
         radius = 0.0 if path.Machine is None else half_size(path.Machine)
         size = max(LEAST_SEEN, WHEELS * radius)
-        self._sight().at_contact(self.wheel, contact[:3, 3], size)
+        self._sight().at_contact(wheel, contact[:3, 3], size)
         if self.shown_path is not path:
             self.poses.show_path(path)
             self.shown_path = path
@@ -259,7 +276,7 @@ class VerdictDock(ObjectDock):
         if path is None:
             self.poses.hide()
             return
-        self.wheel = CellView(self.obj.Document, path.Machine)
+        self.wheel = CellView(self.shown().Document, path.Machine)
         self.wheel.set_path(path.Proxy.arrays(path)["frames"])
         self.wheel.set_pose(pose)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from ...engine import InputError
 from ...objects import belt_machine as machines
 from ...objects.belt import Belt
@@ -131,19 +133,19 @@ class BeltMachinePanel(Panel):
             self.layers.show_layers(layers_of(self.obj))
         self.drawing.update()
         moving = {"ForceLag", "OvershootLimit", "BounceTime"}
-        dynamics = {
+        dynamics: dict[str, set[str]] = {
             "ideal": set(),
             "lag": {"ForceLag"},
             "actuator": moving | {"MovingMass", "Damping", "SpeedLimit"},
-        }[self.obj.ForceModel]
+        }
         force = {
-            "force": {"Force", "ForceTravel", "ForceModel"} | dynamics,
+            "force": {"Force", "ForceTravel", "ForceModel"} | dynamics[self.obj.ForceModel],
             "position": {"RobotStiffness"},
         }[self.obj.Control]
         rubber = {"YoungsModulus", "ShoreA", "PoissonsRatio"}
         rim = rubber | {"RimThickness"}
         belt = {"BeltTension", "BeltBending"}
-        used = {
+        used: dict[str, set[str]] = {
             "wheel_rim": rim | belt,
             "bonded_layer": rim,
             "half_space": rubber,
@@ -181,7 +183,7 @@ class BeltMachinePanel(Panel):
             raise InputError("gui.belt_speed", "The belt speed must be positive.")
         if self.obj.Kind in machines.WHEELS:
             self._check_wheel()
-        machine = {}
+        machine: dict[str, Any] = {}
         keys = (key for key in KIND_KEYS[self.obj.Kind] if key is not LAYERS)
         to_job(self.obj, (*keys, *machines.KEYS), machine)
         if self.obj.Kind == machines.PLATEN:

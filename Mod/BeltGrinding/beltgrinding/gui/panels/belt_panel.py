@@ -21,7 +21,7 @@ class BeltPanel(Panel):
 
     def __init__(self, obj: DocumentObject) -> None:
         super().__init__(obj, translate("BeltGrinding", "Belt"), "BeltGrinding_Belt")
-        self.fields = None
+        self.fields: Form | None = None
         self.place = QtGui.QVBoxLayout()
         self.body.addLayout(self.place)
         self.left = QtGui.QLabel()

@@ -6,6 +6,7 @@ from typing import Any
 
 import FreeCADGui as Gui
 
+from ...base.kinds import known
 from ...engine import Cancelled, InputError
 from ...objects import preferences
 from ...objects.kinds import DocumentObject
@@ -20,7 +21,7 @@ from .run_panel import RunPanel
 
 PREFERENCE = "BeltPlan"  # begins the names of what is kept from one time to the next
 FIELD_WIDTH = 64  # pixels, least: label and field go side by side
-SMALL = {"width": 440, "share": 0.8}  # of the chart in the panel, which shows it at half its size
+SMALL = (440, 0.8)  # width and share of the chart in the panel, which shows it at half its size
 LARGE = 0.9  # of the screen
 FIRST_BELTS = 8  # that are told one by one
 
@@ -64,7 +65,7 @@ class BeltPlanPanel(RunPanel):
 
     def __init__(self, job: DocumentObject) -> None:
         super().__init__(job, translate("BeltGrinding", "Belt plan"), "BeltGrinding_BeltPlan")
-        self.found = None
+        self.found: tuple[belt_plan.BeltPlan, belt_plan.Costs] | None = None
         body = QtGui.QVBoxLayout(self.form)
         about = QtGui.QLabel(
             translate(
@@ -203,7 +204,7 @@ class BeltPlanPanel(RunPanel):
             lines.append(text.format(data["parts_beyond_measured_wear"]))
         self._say("\n".join(lines))
         small = {**words(), "title": ""}
-        self.chart.show_bytes(belt_chart.draw(plan, small, **SMALL))
+        self.chart.show_bytes(belt_chart.draw(plan, small, *SMALL))
         self._arrange(False)
 
     def enlarge(self) -> None:
@@ -230,7 +231,8 @@ class BeltPlanPanel(RunPanel):
         if not folder:
             return
         try:
-            belt_plan.write(*self.found, folder, words(), replace=False)
+            plan, costs = known(self.found)
+            belt_plan.write(plan, costs, folder, words(), replace=False)
         except InputError as error:
             self._say(error_text(error), True)
             return

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 import FreeCADGui as Gui
 
 from ...base.files import cannot_be_written, write_whole
+from ...base.kinds import known
 from ...calibration import calibrate as calibration, example, plot as calibration_plot
 from ...engine import Cancelled, InputError
 from ...objects import job_data, job_inputs, properties
@@ -42,7 +44,8 @@ class CalibrationPanel:
 
     def __init__(self, job: DocumentObject) -> None:
         self.job = job
-        self.task = self.result = None
+        self.task: Background | None = None
+        self.result: Json | None = None  # of ``calibrate.fit``
         self.picture = QtGui.QPixmap()
         self.form = QtGui.QWidget()
         self.form.destroyed.connect(lambda *_: self._gone())  # whatever closes it
@@ -163,7 +166,7 @@ class CalibrationPanel:
         if not path:
             return
         try:
-            write_whole(path, example.table().encode())
+            write_whole(Path(path), example.table().encode())
         except OSError as error:
             self.state.setText(error_text(cannot_be_written(path, error)))
             return
@@ -209,8 +212,8 @@ class CalibrationPanel:
             if not isinstance(error, InputError):
                 raise error
             return
-        self.result, plot, small = outcome
-        report = self.result["report"]
+        result, plot, small = outcome
+        self.result, report = result, result["report"]
         self.state.setText(
             translate(
                 "BeltGrinding",
@@ -272,7 +275,7 @@ class CalibrationPanel:
         document = self.job.Document
         document.openTransaction(translate("BeltGrinding", "Calibrate removal law"))
         try:
-            properties.from_job(self.job, job_data.KEYS, {"law": self.result["law"]})
+            properties.from_job(self.job, job_data.KEYS, {"law": known(self.result)["law"]})
             document.recompute()
             document.commitTransaction()
         except Exception:

@@ -7,6 +7,7 @@ from typing import Any
 import FreeCADGui as Gui
 import numpy as np
 
+from ...base.kinds import known
 from ...objects.belt_machine import BODIES
 from ...objects.job_data import children
 from ...objects.kinds import DocumentObject
@@ -52,28 +53,29 @@ class CellPanel(Panel):
         cell.changed = self.arrange
         self.body.addWidget(cell)
         if self.walk:
-            self.body.addWidget(self._robot())
+            self.body.addWidget(self._robot(self.walk))
         self.body.addWidget(self._bodies())
         self.finish()
         self.arrange()
 
-    def _robot(self) -> RobotBox:
-        self.robot = RobotBox(self.obj, self.walk.path)
+    def _robot(self, walk: PoseWalk) -> RobotBox:
+        self.robot = RobotBox(self.obj, walk.path)
         self.robot.changed = self.redraw
-        self.robot.go = self.walk.go
+        self.robot.go = walk.go
         self.robot.found = self.followed
-        self.walk.moved = lambda _: self.show_joints()
+        walk.moved = lambda _: self.show_joints()
         return self.robot
 
     def followed(self, result: Any) -> None:
         """The whole path was followed: the arm is drawn as it goes along it."""
-        self.walk.view.robot.followed = result["joints"]
-        self.walk.view.update()
+        view = known(self.walk).view
+        view.robot.followed = result["joints"]
+        view.update()
         self.show_joints()
 
     def show_joints(self) -> None:
-        joints = self.walk.view.robot.joints
-        self.robot.show_joints(None if joints is None else np.degrees(joints))
+        joints = known(self.walk).view.robot.joints
+        self.robot.show_joints(None if joints is None else np.degrees(joints).tolist())
 
     def _bodies(self) -> Widget:
         box = QtGui.QGroupBox(translate("BeltGrinding", "Bodies"))
@@ -177,7 +179,7 @@ class CellPanel(Panel):
 
     def draw_paths(self) -> None:
         """Draws the paths where the contact runs now."""
-        for path in self.walk.paths:
+        for path in known(self.walk).paths:
             path.recompute()
 
     def redraw(self) -> None:

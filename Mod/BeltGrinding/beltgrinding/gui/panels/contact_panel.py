@@ -55,7 +55,7 @@ class ContactPanel:
         self.pressing = (
             translate("BeltGrinding", "Wheel") if wheel else translate("BeltGrinding", "Belt")
         )
-        self.task = None
+        self.task: Background | None = None
         self.form = QtGui.QWidget()
         self.form.destroyed.connect(lambda *_: self._gone())  # whatever closes it
         self.form.setWindowTitle(translate("BeltGrinding", "Contact at a pose"))

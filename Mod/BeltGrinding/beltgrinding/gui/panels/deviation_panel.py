@@ -84,11 +84,11 @@ class DeviationPanel(Panel):
     def update(self) -> None:
         """Colours and figures anew."""
         obj = self.obj
-        rows = {"by tolerance": ["TimesTolerance"], "by percentile": ["Percentile"]}
+        used = {"by tolerance": ["TimesTolerance"], "by percentile": ["Percentile"]}
         always = [
             name for name in self.colours.rows if name not in ("TimesTolerance", "Percentile")
         ]
-        self.colours.show_rows([*always, *rows.get(obj.Bounds, [])])
+        self.colours.show_rows([*always, *used.get(obj.Bounds, [])])
         by_hand = ["ColourLimit"] if obj.Bounds == "by hand" else []
         self.tolerance.show_rows(["ToleranceLower", "ToleranceUpper", *by_hand])
         mark_tolerance(self.tolerance, obj.getParentGroup())
@@ -103,7 +103,7 @@ class DeviationPanel(Panel):
         def mm(value: Quantity, sign: str = "+") -> str:
             return preferences.length_text(value.Value, 1, sign)
 
-        rows = (
+        rows: tuple[tuple[str, str], ...] = (
             (translate("BeltGrinding", "In tolerance"), f"{obj.InTolerance:.2f} %"),
             (translate("BeltGrinding", "Too much left"), f"{obj.AboveTolerance:.2f} %"),
             (translate("BeltGrinding", "Cut too deep"), f"{obj.BelowTolerance:.2f} %"),

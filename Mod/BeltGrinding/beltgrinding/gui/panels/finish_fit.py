@@ -25,7 +25,9 @@ class FinishFit:
     """What the button *Fit...* of a ``FinishForm`` does; while it fits, the button ends that."""
 
     def __init__(self, form: Widget) -> None:
-        self.form, self.task, self.window = form, None, None
+        self.form = form
+        self.task: Background | None = None
+        self.window: FitWindow | None = None
         self.clock = QtCore.QTimer(form)
         self.clock.setInterval(int(1000 * TOLD))
         self.clock.timeout.connect(lambda: self._tell_progress())
@@ -37,7 +39,7 @@ class FinishFit:
 
     def press(self) -> None:
         """Begins with a table that the user chooses, or ends the fit that goes on."""
-        if self.busy:
+        if self.task is not None:
             self.task.cancel()
             return
         title = translate("BeltGrinding", "Measured roughness")
@@ -60,7 +62,7 @@ class FinishFit:
         self.clock.start()
 
     def _tell_progress(self) -> None:
-        if self.busy:
+        if self.task is not None:
             share = 100.0 * self.task.context.progress
             text = translate("BeltGrinding", "Fitting, {:.0f} %").format(share)
             self.form.told.setStyleSheet("")

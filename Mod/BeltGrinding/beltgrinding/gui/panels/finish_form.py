@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from ...base.kinds import known
 from ...engine import InputError
 from ...objects.job_data import finish_model
 from ...objects.kinds import DocumentObject
@@ -24,7 +25,8 @@ class FinishForm(KeyForm):
 
     def __init__(self, job: DocumentObject) -> None:
         super().__init__(job, "Finish", translate("BeltGrinding", "Finish"), "finishChoice")
-        self.before = {"crossing_angle_deg": ANGLE}  # what computing it again takes up
+        # What computing it again takes up.
+        self.before: dict[str, Any] | None = {"crossing_angle_deg": ANGLE}
         self.box.addItems(
             [translate("BeltGrinding", "not computed"), translate("BeltGrinding", "computed")]
         )
@@ -76,7 +78,7 @@ class FinishForm(KeyForm):
         return 0 if self.values is None else 1
 
     def shown(self, key: Any) -> str:
-        return shown(self.values.get(key))
+        return shown(known(self.values).get(key))
 
     def show_values(self) -> None:
         super().show_values()
@@ -115,7 +117,7 @@ class FinishForm(KeyForm):
 
     def take_model(self, model: Json | None) -> None:
         """Takes over a model, a job's ``finish.model``, in place of the one that was; None: takes it out."""
-        values = {key: value for key, value in self.values.items() if key != "model"}
+        values = {key: value for key, value in known(self.values).items() if key != "model"}
         if model is not None:
             values["model"] = model
             low, high = model["ranges"]["grit"]
@@ -144,8 +146,9 @@ class FinishForm(KeyForm):
 
     def reason(self, key: Any, value: float | None) -> str:
         if value is None:
-            if key == "grit" and "model" in self.values:
-                low, high = self.values["model"]["ranges"]["grit"]
+            values = known(self.values)
+            if key == "grit" and "model" in values:
+                low, high = values["model"]["ranges"]["grit"]
                 needed = translate("BeltGrinding", "give the belt's grit; {} to {} were measured")
                 return needed.format(shown(low), shown(high))
             return ""
@@ -165,7 +168,8 @@ class FinishForm(KeyForm):
 
     def lines(self) -> list[str]:
         """What the measurements hold for, and what is not known."""
-        model = self.values.get("model")
+        values = known(self.values)
+        model = values.get("model")
         if model is None:
             text = translate(
                 "BeltGrinding",
@@ -179,7 +183,7 @@ class FinishForm(KeyForm):
         ]
         if model["source"]:
             lines.append(model["source"])
-        if self.values.get("rest_per_pass", model.get("rest_per_pass")) is None:
+        if values.get("rest_per_pass", model.get("rest_per_pass")) is None:
             lines.append(
                 translate(
                     "BeltGrinding",

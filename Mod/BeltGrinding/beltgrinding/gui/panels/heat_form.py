@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from ...base.kinds import known
 from ...engine import InputError
 from ...objects.kinds import DocumentObject
 from ...presets import library as presets
@@ -59,7 +60,7 @@ class HeatForm(KeyForm):
 
     def shown(self, key: Any) -> str:
         name, end = key
-        value = self.values.get(name, START if name == "start_temperature_C" else 0.0)
+        value = known(self.values).get(name, START if name == "start_temperature_C" else 0.0)
         return shown(value[end] if name in PAIRS else value)
 
     def index(self) -> int:
@@ -91,15 +92,15 @@ class HeatForm(KeyForm):
         self.write()
 
     def read(self) -> dict[str, Any] | None:
-        values = super().read()
-        if values is None:
+        values, before = super().read(), self.values
+        if values is None or before is None:
             return None
-        if values["burn_temperature_C"] != self.values.get("burn_temperature_C", 0.0):
+        if values["burn_temperature_C"] != before.get("burn_temperature_C", 0.0):
             values["burn_source"] = ""  # it was that of another limit
         same = {
             key: value for key, value in values.items() if key not in ("material", "burn_source")
         }
-        if same != {key: self.values.get(key) for key in same}:
+        if same != {key: before.get(key) for key in same}:
             values["material"] = ""
         return values
 

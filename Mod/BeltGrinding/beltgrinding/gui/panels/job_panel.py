@@ -59,7 +59,7 @@ class JobPanel(Panel):
 
     def __init__(self, obj: DocumentObject) -> None:
         super().__init__(obj, translate("BeltGrinding", "Belt-grinding job"), "BeltGrinding_Job")
-        self.first = getattr(obj.Proxy, "proposed", None)  # values of a new job, from its part
+        self.first: dict[str, Any] | None = getattr(obj.Proxy, "proposed", None)  # of a new job
         self.body.addWidget(self._faces())
         self.folds = [*self._whole()]
         for fold in self.folds:
@@ -141,7 +141,7 @@ class JobPanel(Panel):
     def _whole(self) -> Iterator[Fold]:
         """Stock, machine and passes, in short; each has a panel of its own with all there is to it."""
         new = self.first is not None
-        stock = job_data.child(self.obj, Stock)
+        stock: DocumentObject = job_data.child(self.obj, Stock)
         if stock is not None and stock.Kind == "allowance":
             form = Form(stock, "")
             form.add("Allowance", translate("BeltGrinding", "Allowance"))
@@ -284,19 +284,19 @@ class JobPanel(Panel):
         self.obj.DesignFaces = [(obj, (sub,)) for obj, sub in pairs]
         self.fill()
         if self.first is not None and "feed_mm_s" in self.first and pairs:
-            self.propose()
+            self.propose(self.first)
         self.estimate()
 
-    def propose(self) -> None:
-        """Looks at other faces; what the user has changed stays."""
+    def propose(self, first: dict[str, Any]) -> None:
+        """Looks at other faces; what the user has changed of the ``first`` values stays."""
         text = translate("BeltGrinding", "Looking at the part for first values")
         try:
             found = first_settings.propose(self.obj, text)
         except (InputError, Cancelled) as error:
-            self.first["notes"], self.kind = [error], self._kind()
+            first["notes"], self.kind = [error], self._kind()
             return
-        first_settings.apply(self.obj, found, self.first)
-        self.first = self.obj.Proxy.proposed = {**self.first, **found}
+        first_settings.apply(self.obj, found, first)
+        self.first = self.obj.Proxy.proposed = {**first, **found}
         self.chosen, self.kind = self._numbers(), self._kind()
         for form in self.form.findChildren(Form):
             for name in form.rows:
@@ -328,7 +328,7 @@ class JobPanel(Panel):
         if self.machine is not None:
             self.machine.arrange()
         if self.first is not None and "feed_mm_s" in self.first and self._kind() != self.kind:
-            self.propose()
+            self.propose(self.first)
         mark_tolerance(self.sampling, self.obj)
         try:
             self.check()

@@ -35,7 +35,8 @@ class KeyForm(QtGui.QGroupBox):
         super().__init__(title)
         self.job, self.changed = job, lambda: None
         self.key = next(key for key in KEYS if key.name == name)
-        self.values, self.fields = None, {}
+        self.values: dict[str, Any] | None = None
+        self.fields: dict[Any, Widget] = {}
         self.rows = QtGui.QFormLayout(self)
         self.rows.setFieldGrowthPolicy(QtGui.QFormLayout.AllNonFixedFieldsGrow)
         self.rows.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import FreeCADGui as Gui
 
+from ...base.kinds import known
 from ...engine import InputError
 from ...objects import api, plan as planned
 from ...objects.kinds import DocumentObject
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
 class PlanPanel(RunPanel):
     """Settings go into the Plan object as they are typed; what was found is shown, and goes into the paths by
     Apply."""
+
+    runner: PlanRunner | None
 
     def __init__(self, obj: DocumentObject) -> None:
         super().__init__(
@@ -181,7 +184,7 @@ class PlanPanel(RunPanel):
 
     def progress(self, share: float) -> None:
         super().progress(share)
-        self.figures.show_rounds(self.runner.rounds)
+        self.figures.show_rounds(known(self.runner).rounds)
 
     def done(self, found: Any, error: BaseException | None) -> None:
         super().done(found, error)

@@ -103,11 +103,11 @@ class PresetForm(QtGui.QGroupBox):
     def __init__(self, obj: DocumentObject, forms: Sequence[Form], hardness: HardnessField) -> None:
         super().__init__(translate("BeltGrinding", "Presets"))
         self.obj, self.forms, self.hardness = obj, forms, hardness
-        self.boxes, self.labels, self.hints = (
-            {},
-            {},
-            {},
-        )  # combo boxes and what is beside and below them, by kind
+        # Combo boxes, and what is beside and below them, by kind.
+        self.boxes: dict[str, Widget] = {}
+        self.labels: dict[str, Widget] = {}
+        self.hints: dict[str, Widget] = {}
+        self.recommended = 0.0  # m/s
         self.rows = QtGui.QFormLayout(self)
         self.rows.setFieldGrowthPolicy(QtGui.QFormLayout.AllNonFixedFieldsGrow)
         self.rows.setRowWrapPolicy(QtGui.QFormLayout.WrapAllRows)
@@ -122,7 +122,6 @@ class PresetForm(QtGui.QGroupBox):
         self.rows.addRow(self.speed)
         self._add("actuator", translate("BeltGrinding", "Force control"), found.actuators)
         self.speed.clicked.connect(lambda *_: self._put({SPEED: self.recommended}))
-        self.recommended = 0.0  # m/s
         if found.problems:
             wrong = _hint("PresetProblems")
             wrong.setText("\n".join(error_text(problem) for problem in found.problems))

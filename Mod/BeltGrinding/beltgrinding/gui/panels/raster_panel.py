@@ -240,7 +240,7 @@ class RasterPanel(Panel):
         if self.obj.StepOver.Value > 0:
             hidden |= {"StepOverShare", "Footprint"}
         self.passes.show_rows(set(self.passes.rows) - hidden)
-        unused = {
+        unused: dict[str, set[str]] = {
             "run_on": set(),
             "inside": {"Lead"},
             "direct": {"Lead", "Ramp", "TouchForceShare", "EntryFeed"},

@@ -9,7 +9,7 @@ from typing import Any
 from ...cell import arm_check
 from ...engine import Cancelled, InputError, core
 from ...objects import job_inputs
-from ...objects.kinds import DocumentObject
+from ...objects.kinds import DocumentObject, Event
 from ...presets import library as presets, robot as robots
 from ...geometry.body_names import LINKS
 from ..common import event_texts
@@ -32,8 +32,11 @@ class RobotBox(QtGui.QGroupBox):
     def __init__(self, machine: DocumentObject, path: Callable[[], DocumentObject]) -> None:
         super().__init__(translate("BeltGrinding", "Robot"))
         self.machine, self.path = machine, path
-        self.changed = self.found = self.go = lambda *_: None
-        self.task, self.events = None, []
+        self.changed: Callable[[], object] = lambda: None
+        self.found: Callable[[Any], object] = lambda result: None
+        self.go: Callable[[int], object] = lambda pose: None
+        self.task: Background | None = None
+        self.events: list[Event] = []  # of the path that was checked
         self.unchecked = ""  # why what the arm may meet was not looked at
         layout = QtGui.QFormLayout(self)
         layout.setRowWrapPolicy(QtGui.QFormLayout.WrapAllRows)

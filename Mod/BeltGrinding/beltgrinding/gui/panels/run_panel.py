@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import FreeCAD
 import FreeCADGui as Gui
 
+from ...base.kinds import known
 from ...engine import Cancelled, InputError
 from ...objects.kinds import DocumentObject
 from ..common.compat import QtGui, buttons, translate
@@ -31,7 +32,8 @@ class RunPanel:
 
     def __init__(self, job: DocumentObject, title: str, icon_name: str) -> None:
         self.job = job
-        self.runner = self.status = None
+        self.runner: Runner | None = None
+        self.status: StatusProgress | None = None
         self.form = QtGui.QWidget()
         self.form.setWindowTitle(title)
         self.form.setWindowIcon(qicon(icon_name))
@@ -79,7 +81,7 @@ class RunPanel:
             self.runner.cancel()
 
     def progress(self, share: float) -> None:
-        seconds = time.monotonic() - self.runner.start
+        seconds = time.monotonic() - known(self.runner).start
         text = self.doing().format(duration(seconds))
         left = self.left.update(seconds, share)
         if left is not None:
@@ -87,12 +89,12 @@ class RunPanel:
         with painted_once(self.form):
             self.bar.setValue(int(1000 * share))
             self._say(text)
-        self.status.update_progress(share, text)
+        known(self.status).update_progress(share, text)
 
     def done(self, simulation: DocumentObject, error: BaseException | None) -> None:
         """It has ended."""
         self._remove_status()
-        if self.runner.job() is None:
+        if known(self.runner).job() is None:
             Gui.Control.closeDialog()
             return
         self.runner = None
@@ -104,7 +106,7 @@ class RunPanel:
         else:
             self._tell(error)
 
-    def _tell(self, error: BaseException | None) -> None:
+    def _tell(self, error: BaseException) -> None:
         """An error in the panel, and in full in the report view."""
         if not isinstance(error, InputError):
             lines = traceback.format_exception(type(error), error, error.__traceback__)

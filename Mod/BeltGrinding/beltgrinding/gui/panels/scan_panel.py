@@ -31,7 +31,8 @@ class ScanPanel(Panel):
     def __init__(self, job: DocumentObject) -> None:
         title = translate("BeltGrinding", "Compare a scan")
         super().__init__(child(job, simulation.Simulation), title, "BeltGrinding_Scan")
-        self.job, self.work = job, None
+        self.job = job
+        self.work: Background | None = None
         rows = QtGui.QFormLayout()
         rows.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)
         self.file = self._file(rows, translate("BeltGrinding", "Scan"), "scan")

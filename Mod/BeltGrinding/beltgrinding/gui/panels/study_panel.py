@@ -6,6 +6,7 @@ import json
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from ...base.kinds import known
 from ...engine import InputError
 from ...objects import job_data, study as studies, study_keys
 from ...objects.kinds import DocumentObject
@@ -32,6 +33,8 @@ MOST_RUNS, MOST_SEED, MOST_WORKERS = 1_000_000, 2**31 - 1, 4096
 
 class StudyPanel(RunPanel):
     """Settings go into the Study object as they are typed; the table and the answers are stored in it in the end."""
+
+    runner: StudyRunner | None
 
     def __init__(self, obj: DocumentObject, open_table: Callable[[DocumentObject], object]) -> None:
         """``open_table(obj)`` shows the table and the charts."""
@@ -188,7 +191,7 @@ class StudyPanel(RunPanel):
 
     def progress(self, share: float) -> None:
         super().progress(share)
-        told = self.runner.told
+        told = known(self.runner).told
         if told is None or not told.runs:
             return
         text = translate("BeltGrinding", "{} of {} runs").format(told.done, told.runs)

@@ -50,7 +50,7 @@ class ZonesPanel(Panel):
         self.table = self._table()
         self.body.addWidget(self.table)
         self.body.addLayout(self._buttons())
-        self.fields = {}  # column: field of the chosen zone
+        self.fields: dict[int, Widget] = {}  # column: field of the chosen zone
         self.body.addWidget(self._chosen())
         self.finish()
         self.gate = FaceGate()
@@ -194,7 +194,7 @@ class ZonesPanel(Panel):
 
     def zone(self, row: int) -> dict[str, Any]:
         """The zone in a row. Raises InputError naming the cell."""
-        zone = {"name": self.text(row, NAME), "faces": self._faces(row)}
+        zone: dict[str, Any] = {"name": self.text(row, NAME), "faces": self._faces(row)}
         if not zone["name"]:
             raise InputError(
                 "gui.zone_without_name", "Row {row}: a zone needs a name.", row=row + 1
@@ -214,7 +214,8 @@ class ZonesPanel(Panel):
 
     def _finish(self, row: int) -> dict[str, Any]:
         """A zone's ``finish``; {} where the drawing calls for none."""
-        found, words = {}, self.text(row, RA).split()
+        found: dict[str, Any] = {}
+        words = self.text(row, RA).split()
         if words:
             if words[-1] in ACCEPTANCES:  # may stand alone: it counts for the lay, too
                 found["acceptance"] = words.pop()
@@ -401,5 +402,4 @@ def _ra_text(finish: Json) -> str:
 def _lay_text(finish: Json) -> str:
     """What stands for a zone's lay."""
     symbol = finish.get("lay", "")
-    numbers = finish.get(LAYS.get(symbol), [])
-    return " ".join([symbol, *(shown(value) for value in numbers)])
+    return " ".join([symbol, *map(shown, finish.get(LAYS.get(symbol, ""), []))])

@@ -55,8 +55,9 @@ def fork_parts(machine: DocumentObject) -> dict[str, Node]:
 def _runs_and_arms(holder: ModuleType, job: Json) -> dict[str, Node]:
     found = {}
     for name, side in zip(holder.NAMES, (-1.0, 1.0)):
-        found[name] = separator(material(BELT), triangles(*holder.run(job, side), crease=0.0))
-    arms = [triangles(*arm, crease=0.0) for arm in holder.arms(job)]
+        points, faces = holder.run(job, side)
+        found[name] = separator(material(BELT), triangles(points, faces, crease=0.0))
+    arms = [triangles(points, faces, crease=0.0) for points, faces in holder.arms(job)]
     if arms:
         found[holder.ARMS] = separator(material(CORE), *arms)
     return found
@@ -66,9 +67,9 @@ def as_job(machine: DocumentObject) -> dict[str, Any]:
     """A job's ``belt_machine`` of one in the document; layers that were written by hand and are none are left out, and so
     is a radius that a platen cannot have."""
     keys = (key for key in KIND_KEYS[machine.Kind] if key is not LAYERS)
-    job = {"belt_machine": {}}
-    to_job(machine, (*keys, *KEYS), job)
-    job = job["belt_machine"]
+    data: dict[str, Any] = {"belt_machine": {}}
+    to_job(machine, (*keys, *KEYS), data)
+    job: dict[str, Any] = data["belt_machine"]
     if machine.Kind == PLATEN:
         job["platen"]["layers"] = layers_of(machine)
         try:
@@ -127,7 +128,8 @@ def belt(job: Json, pushed: tuple[Array, Array] | None = None) -> Surface:
         if pushed is not None:
             face[:, 1] -= np.interp(free_run.line(job, places)[:, 0], *pushed, left=0.0, right=0.0)
         lines.append(_round_rollers(job, face, below))
-    return (band if _closed(job) else _between)(*lines, 0.5 * run["width_mm"])
+    inside, outside = lines
+    return (band if _closed(job) else _between)(inside, outside, 0.5 * run["width_mm"])
 
 
 def _between(inside: Array, outside: Array, half: float) -> Surface:

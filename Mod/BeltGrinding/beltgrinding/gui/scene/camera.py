@@ -43,15 +43,15 @@ def fly_to(view: View3D, point: Point, normal: Point, size: float, up: Point = (
     """Moves a 3D view's camera to look against ``normal`` at ``point`` (both three numbers, document's
     frame), with ``size`` mm in its height and ``up`` upwards; at once where the view's animation is off.
     """
-    point, normal = FreeCAD.Vector(*point), FreeCAD.Vector(*normal).normalize()
+    target, towards = FreeCAD.Vector(*point), FreeCAD.Vector(*normal).normalize()
     camera = view.getCameraNode()
     perspective = camera.isOfType(coin.SoPerspectiveCamera.getClassTypeId())
     distance = 5.0 * size
     if perspective:
         distance = 0.5 * size / math.tan(0.5 * camera.heightAngle.getValue())
     end = {
-        "position": point + normal * distance,
-        "turn": _upright(normal, FreeCAD.Vector(*up)),
+        "position": target + towards * distance,
+        "turn": _upright(towards, FreeCAD.Vector(*up)),
         "distance": distance,
         "height": size,
     }

@@ -35,7 +35,7 @@ from .shapes3d import (
 
 PLACES = {"wheel": "contact"}  # where a body goes, if it is not called as in a job
 ALARM, TINT, FADE = (0.86, 0.12, 0.10), "BeltGrindingTint", "BeltGrindingFade"
-CELL = {
+CELL: dict[str, Any] = {
     "holding": "tool_in_hand",
     **dict.fromkeys(
         ("base_from_work", "tcp_from_contact", "tcp_from_work", "base_from_contact"), np.eye(4)
@@ -50,7 +50,7 @@ class CellView:
         self.machine = machine
         self.poses = np.zeros((0, 4, 4))
         self.pose, self.moving = 0, False
-        self.frame = None  # between two poses
+        self.frame: Array | None = None  # between two poses
         self.carrier = coin.SoMatrixTransform()
         self.places = {name: coin.SoMatrixTransform() for name in ("contact", "tool", "base")}
         self.things = {name: coin.SoGroup() for name in (*self.places, "part")}
@@ -58,9 +58,10 @@ class CellView:
         for name, things in self.things.items():
             nodes = [self.places[name]] if name in self.places else []
             self.root.addChild(separator(*nodes, things))
-        self.bodies, self.tinted = {}, ()  # {name: node}; names
-        self.belt = None  # of a machine without a wheel, as a job has it
-        self.part = None  # (points, triangles)
+        self.bodies: dict[str, Node] = {}  # by their names
+        self.tinted: tuple[str, ...] = ()  # names of bodies
+        self.belt: dict[str, Any] | None = None  # of a machine without a wheel, as a job has it
+        self.part: Surface | None = None
         self.pressed = False  # the belt is drawn as the part presses it
         self.robot = RobotView()
         self.root.addChild(self.robot.root)
@@ -106,8 +107,8 @@ class CellView:
         size = 50.0
         if self.machine is not None:
             size = belt_machine.half_size(self.machine)
-            self.bodies = self._pressing()
-            self._take_part()
+            self.bodies = _pressing(self.machine)
+            self._take_part(self.machine)
             for node in self.bodies.values():
                 self.things["contact"].addChild(node)
             for name, frame, obj in bodies.listed(self.machine):
@@ -119,28 +120,17 @@ class CellView:
         self.things["tool"].addChild(axes(0.3 * size))
         self.update()
 
-    def _pressing(self) -> dict[str, Node]:
-        """{name as events have it: node} of what presses on the part."""
-        if self.machine.Kind in belt_machine.WHEELS:
-            more = (
-                {}
-                if self.machine.Kind == belt_machine.WHEEL
-                else belt_shapes.fork_parts(self.machine)
-            )
-            return {WHEEL: wheel(self.machine), **more}
-        return belt_shapes.parts(self.machine)
-
-    def _take_part(self) -> None:
+    def _take_part(self, machine: DocumentObject) -> None:
         """What presses on a belt, where that is no wheel."""
         self.belt, self.part, self.pressed = None, None, False
-        job = self.machine.getParentGroup()
-        if self.machine.Kind in belt_machine.WHEELS or not hasattr(job, "DesignFaces"):
+        job = machine.getParentGroup()
+        if machine.Kind in belt_machine.WHEELS or not hasattr(job, "DesignFaces"):
             return
-        self.belt, self.part = belt_shapes.as_job(self.machine), mesh_of_part(job)
+        self.belt, self.part = belt_shapes.as_job(machine), mesh_of_part(job)
 
     def _press(self, contact: Array) -> None:
         """Draws the belt as the part presses it at the pose."""
-        if self.part is None or not len(self.part[1]):
+        if self.belt is None or self.part is None or not len(self.part[1]):
             return
         points, triangles = self.part
         points = (points - contact[:3, 3]) @ contact[:3, :3]
@@ -171,13 +161,12 @@ class CellView:
             return {}
         frames, found = self.frames(), self.robot.solids()
         for name, frame, obj in bodies.listed(self.machine):
-            points, faces = mesh_of(obj)
+            points, faces = (np.array(one) for one in mesh_of(obj))
             if len(faces) and PLACES.get(frame, frame) in frames:
                 place = frames[PLACES.get(frame, frame)]
-                points = np.array(points) @ place[:3, :3].T + place[:3, 3]
-                found[name] = points, np.array(faces)
+                found[name] = points @ place[:3, :3].T + place[:3, 3], faces
             elif len(faces):
-                found[name] = np.array(points), np.array(faces)
+                found[name] = points, faces
         return found
 
     def cell(self) -> dict[str, Any]:
@@ -212,14 +201,22 @@ class CellView:
         """Index of the pose whose contact point is drawn within ``reach`` pixels of ``position``
         (x, y from the lower left), None if there is none."""
         points = work_from_frames(self.poses, **self.cell())["contact"][:, :3, 3]
-        points = np.hstack([points, np.ones((len(points), 1))]) @ self.carried(self.frames()).T
-        seen, depth = project(view, points)
+        ends = np.hstack([points, np.ones((len(points), 1))])
+        seen, depth = project(view, ends @ self.carried(self.frames()).T)
         distance = np.linalg.norm(seen - np.asarray(position, dtype=float), axis=1)
         near = np.flatnonzero(distance <= reach)
         # Of those that lie on one another, what is in front is meant.
         return (
             int(near[np.lexsort((depth[near], np.round(distance[near])))[0]]) if len(near) else None
         )
+
+
+def _pressing(machine: DocumentObject) -> dict[str, Node]:
+    """{name as events have it: node} of what presses on the part."""
+    if machine.Kind in belt_machine.WHEELS:
+        more = {} if machine.Kind == belt_machine.WHEEL else belt_shapes.fork_parts(machine)
+        return {WHEEL: wheel(machine), **more}
+    return belt_shapes.parts(machine)
 
 
 def _put_first(group: Node, name: str, node: Node | None) -> None:

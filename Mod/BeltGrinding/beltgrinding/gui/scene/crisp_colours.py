@@ -7,6 +7,7 @@ import json
 import numpy as np
 from pivy import coin
 
+from ...base.kinds import known
 from ...objects import preferences
 from ...objects.deviation import (
     DIFFERENCE,
@@ -21,7 +22,7 @@ from ...objects.deviation import (
     temperature_span,
 )
 from ...objects.fields import field_of
-from ...objects.kinds import DocumentObject, ViewObject
+from ...objects.kinds import DocumentObject, Field, ViewObject
 from ..common.kinds import Node
 from . import field_view
 from .field_view import FieldView
@@ -35,7 +36,8 @@ class CrispColours:
     colours; it is only not drawn where this can."""
 
     def __init__(self, root: Node) -> None:
-        self.field = self.shape = None
+        self.field: Field | None = None
+        self.shape: FieldView | None = None
         self.switch, self.mesh_style = coin.SoSwitch(), coin.SoDrawStyle()
         self.mesh_style.style = coin.SoDrawStyle.FILLED
         root.insertChild(self.mesh_style, 0)
@@ -79,21 +81,21 @@ class CrispColours:
         return True
 
     def _colour(self, obj: DocumentObject) -> None:
-        field = self.field
+        field, shape = known(self.field), known(self.shape)
         scale = (obj.ToleranceLower.Value, obj.ToleranceUpper.Value, obj.ColourLimit.Value)
         if obj.ColourBy == UNCERTAINTY and len(field.height_sd):
-            self.shape.colour_by(field_view.UNCERTAINTY, obj.UncertaintyLimit.Value)
+            shape.colour_by(field_view.UNCERTAINTY, obj.UncertaintyLimit.Value)
         elif obj.ColourBy in (MEASURED, DIFFERENCE) and len(field.measured):
             heights = scan_heights(obj, field)
-            self.shape.colour_by(field_view.DEVIATION, *scale, values=heights)
+            shape.colour_by(field_view.DEVIATION, *scale, values=heights)
         elif obj.ColourBy == TEMPERATURE and field.heat is not None:
             rise = np.array(field.heat["rise"], dtype=float)
-            self.shape.colour_by(field_view.TEMPERATURE, temperature_span(obj), values=rise)
+            shape.colour_by(field_view.TEMPERATURE, temperature_span(obj), values=rise)
         elif obj.ColourBy == ROUGHNESS and field.finish is not None:
             rough = roughness_of(field)
-            self.shape.colour_by(field_view.ROUGHNESS, roughness_span(obj), values=rough)
+            shape.colour_by(field_view.ROUGHNESS, roughness_span(obj), values=rough)
         else:
-            self.shape.colour_by(field_view.DEVIATION, *scale, bands_of(obj), preferences.colours())
+            shape.colour_by(field_view.DEVIATION, *scale, bands_of(obj), preferences.colours())
 
 
 def _drawable(view: ViewObject) -> bool:

@@ -118,7 +118,9 @@ class FieldView:
         self.flags, self.faces = field.flags, field.faces
         module = None if stock_nodes else _coin_module()
         self.own_node = module is not None
-        self.drawn = _OwnNode(module, field) if self.own_node else _StockNodes(field)
+        self.drawn: _OwnNode | _StockNodes = (
+            _StockNodes(field) if module is None else _OwnNode(module, field)
+        )
         light = coin.SoLightModel()  # none: a shade would change what a colour says
         light.model = coin.SoLightModel.BASE_COLOR
         hints = coin.SoShapeHints()  # seen from both sides
@@ -158,20 +160,21 @@ class FieldView:
             self.drawn.set_colours(core.face_colours(self.faces))
         elif mode == DEVIATION:
             values = self.heights if values is None else values
-            if self.own_node:
-                end = max(float(limits[2]), LEAST)
-                palette = core.colour_scale(*limits[:3], _middles(-end, end), *limits[3:])
-                self._set_values(values, -end, end, palette)
+            if isinstance(self.drawn, _OwnNode):
+                lower, upper, limit, *steps = limits
+                end = max(float(limit), LEAST)
+                palette = core.colour_scale(lower, upper, limit, _middles(-end, end), *steps)
+                self._set_values(self.drawn, values, -end, end, palette)
             else:
                 self.drawn.set_colours(core.height_colours(values, self.flags, *limits))
         elif mode in MODES:
             if values is None:
                 values = self._known(mode)
             limits = limits or ((1.0,) if mode == CONTACT else ())
-            if self.own_node:
+            if isinstance(self.drawn, _OwnNode):
                 end = max(float(limits[0]), LEAST)
                 palette = core.uncertainty_scale(end, _middles(0.0, end))
-                self._set_values(values, 0.0, end, palette)
+                self._set_values(self.drawn, values, 0.0, end, palette)
             else:
                 self.drawn.set_colours(core.magnitude_colours(values, self.flags, *limits))
         else:
@@ -182,11 +185,13 @@ class FieldView:
                 modes=", ".join(MODES),
             )
 
-    def _set_values(self, values: Array, low: float, high: float, palette: Array) -> None:
+    def _set_values(
+        self, drawn: _OwnNode, values: Array, low: float, high: float, palette: Array
+    ) -> None:
         missed = (self.flags & core.MISSED) != 0
         values = np.where(missed, np.nan, values)
         (missing,) = core.colour_scale(-1.0, 1.0, 2.0, [np.nan])
-        self.drawn.set_values(values, low, high, palette, int(missing))
+        drawn.set_values(values, low, high, palette, int(missing))
 
     def _known(self, mode: str) -> Array:
         if mode == REMOVED:

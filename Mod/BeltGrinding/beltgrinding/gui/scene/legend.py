@@ -96,11 +96,11 @@ def _deviation(
             translate("BeltGrinding", "too much left"),
         )
     return Spec(
-        [int(c) for c in colours],
+        colours.tolist(),
         labels,
         text.format(unit.symbol),
         words,
-        tuple(beyond),
+        beyond,
         _warning(out_of_date),
     )
 
@@ -117,12 +117,12 @@ def label_values(lower: float, upper: float, limit: float, bands: int = 0) -> li
     """The deviations (mm) that are written: ends, limits, and borders of the bands or halves; none
     so near to another that they would overlap.
     """
-    between = (-0.5 * limit, 0.5 * limit)
+    between = [-0.5 * limit, 0.5 * limit]
     if bands:
         steps = [k / bands for k in range(1, bands)]
         between = [upper + t * (limit - upper) for t in steps]
         between += [lower - t * (limit + lower) for t in steps]
-    values = []
+    values: list[float] = []
     for value in (-limit, limit, lower, upper, *between):
         if all(abs(value - other) > LABEL_GAP * limit for other in values):
             values.append(value)
@@ -137,8 +137,7 @@ def uncertainty(limit: float, out_of_date: bool = False) -> Spec:
     unit = preferences.deviation_unit()
     labels = {k / 4: f"{limit * k / 4 / unit.size:.3g}" for k in range(5)}
     text = translate("BeltGrinding", "uncertainty, {}").format(unit.symbol)
-    colours = [int(c) for c in colours]
-    return Spec(colours, labels, text, ("", ""), (False, True), _warning(out_of_date))
+    return Spec(colours.tolist(), labels, text, ("", ""), (False, True), _warning(out_of_date))
 
 
 def temperature(start: float, span: float, out_of_date: bool = False) -> Spec:
@@ -146,8 +145,7 @@ def temperature(start: float, span: float, out_of_date: bool = False) -> Spec:
     colours = core.uncertainty_scale(span, [span * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)])
     labels = {k / 4: f"{start + span * k / 4:.0f}" for k in range(5)}
     text = translate("BeltGrinding", "greatest temperature, °C")
-    colours = [int(c) for c in colours]
-    return Spec(colours, labels, text, ("", ""), (False, False), _warning(out_of_date))
+    return Spec(colours.tolist(), labels, text, ("", ""), (False, False), _warning(out_of_date))
 
 
 def roughness(span: float, out_of_date: bool = False) -> Spec:
@@ -155,8 +153,7 @@ def roughness(span: float, out_of_date: bool = False) -> Spec:
     colours = core.uncertainty_scale(span, [span * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)])
     labels = {k / 4: f"{span * k / 4:.2g}" for k in range(5)}
     text = translate("BeltGrinding", "roughness Ra, µm")
-    colours = [int(c) for c in colours]
-    return Spec(colours, labels, text, ("", ""), (False, False), _warning(out_of_date))
+    return Spec(colours.tolist(), labels, text, ("", ""), (False, False), _warning(out_of_date))
 
 
 class Legend:
@@ -165,12 +162,14 @@ class Legend:
     """
 
     def __init__(self) -> None:
-        self.spec, self.points = None, np.zeros((0, 3))
+        self.spec: Spec | None = None
+        self.points: Array = np.zeros((0, 3))
         self.column = 0  # how many others stand beside it
-        self.places = {}  # of a view's size: the place where it stood last
-        self.pictures = {}  # (size, dark): (SbVec2s, bytes)
-        self.drawn = None  # what the image holds
-        self.box = None  # (left, bottom, right, top) in pixels, as drawn last
+        self.places: dict[tuple[float, float], int] = {}  # by a view's size: where it stood last
+        # By a view's size and whether the theme is dark: size and bytes.
+        self.pictures: dict[tuple[int, int, bool], tuple[tuple[int, int], bytes]] = {}
+        self.drawn: tuple[int, int, bool] | None = None  # key of the picture that the image holds
+        self.box: tuple[int, ...] | None = None  # left, bottom, right, top in pixels, as drawn last
         self.node = coin.SoType.fromName("SoSkipBoundingGroup").createInstance()
         self.node = self.node or coin.SoSeparator()
         watch = coin.SoCallback()

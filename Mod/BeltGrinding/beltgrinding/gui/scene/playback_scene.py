@@ -91,7 +91,8 @@ class Scene:
 
     def _scale(self, job: DocumentObject) -> tuple[Any, ...]:
         """(lower, upper, end of the ramps, mm; bands; colours) as the Deviation is drawn."""
-        scale, bands = colour_scale({"inspection": job_data.inspection(job)}), 0
+        scale: tuple[float, ...] = colour_scale({"inspection": job_data.inspection(job)})
+        bands = 0
         if self.deviation is not None and self.deviation.ColourLimit.Value > 0:
             names = ("ToleranceLower", "ToleranceUpper", "ColourLimit")
             scale = tuple(getattr(self.deviation, name).Value for name in names)
@@ -99,7 +100,8 @@ class Scene:
         return (*scale, bands, preferences.colours())
 
     def _show_legend(self) -> None:
-        self.legend.show(legend.deviation(*self.scale[:3], bands=self.scale[3]))
+        lower, upper, limit, bands, _ = self.scale
+        self.legend.show(legend.deviation(lower, upper, limit, bands=bands))
 
     def recolour(self, job: DocumentObject) -> None:
         """Takes the scale over anew. What a changed Deviation has turned on is turned off again."""

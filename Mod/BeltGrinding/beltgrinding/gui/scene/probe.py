@@ -11,7 +11,7 @@ from pivy import coin
 
 from ...engine import InputError
 from ...objects import preferences, readout as readings
-from ...objects.kinds import DocumentObject
+from ...objects.kinds import DocumentObject, Field
 from ..common.compat import QtCore, QtGui, translate
 from ..common.kinds import Json, Node, View3D
 from ..common.messages import error_text
@@ -49,7 +49,8 @@ class Probe(QtGui.QGroupBox):
         self.fade.setSingleShot(True)
         self.fade.timeout.connect(self.label.hide)
         self.dot, self.place = _dot()
-        self.field = self.picked = None
+        self.field: Field | None = None
+        self.picked: field_view.FieldView | None = None
         self.listening = []
         for view in Gui.getDocument(obj.Document.Name).mdiViewsOfType("Gui::View3DInventor"):
             call = view.addEventCallback(
@@ -95,7 +96,7 @@ class Probe(QtGui.QGroupBox):
         if self.field is not self.reader.field:
             self.field, self.picked = self.reader.field, None
             if field_view.has_own_node():
-                self.picked = field_view.FieldView(self.field)
+                self.picked = field_view.FieldView(self.reader.field)
         if self.picked is not None:  # finds one of a million samples at once
             index = self.picked.pick(view, position)
             if index is None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pivy import coin
@@ -12,8 +12,11 @@ from ...base import frames
 from ...engine import InputError
 from ...presets import robot as robots
 from ...geometry.body_names import LINKS
-from ..common.kinds import Array, Json, Surface
+from ..common.kinds import Array, Json, Node, Surface
 from .shapes3d import material, separator, set_matrix, triangles
+
+if TYPE_CHECKING:
+    from ...engine import core
 
 LINK, HUB = (0.96, 0.55, 0.14), (0.20, 0.24, 0.30)
 CREASE = 0.6  # rad; round along a link, an edge at its ends
@@ -25,10 +28,13 @@ class RobotView:
 
     def __init__(self) -> None:
         self.root = coin.SoSwitch()
-        self.places, self.bodies = [], {}
-        self.arm = self.joints = None
-        self.shapes, self.at = [], []  # of the links: (points, triangles), frames at the pose
-        self.followed = None  # (n, 6) degrees, where the whole path has been followed
+        self.places: list[Node] = []
+        self.bodies: dict[str, Node] = {}
+        self.arm: core.RobotArm | None = None
+        self.joints: Array | None = None
+        self.shapes: list[tuple[str, Array, Array]] = []  # of the links: name, points, triangles
+        self.at: list[Array] = []  # frames of the links at the pose
+        self.followed: Array | None = None  # (n, 6) degrees, of a path that was followed as a whole
 
     def choose(self, robot: Json) -> None:
         """A job's robot, with its defaults; its errors are the panel's."""
@@ -48,16 +54,15 @@ class RobotView:
 
     def place(self, work_from_base: Array, base_from_tcp: Array, index: int) -> None:
         """Puts the arm where it holds the tool frame at the pose number ``index`` (from 0)."""
-        self.joints = None
-        if self.arm is not None:
-            self.joints = self._solve(base_from_tcp, index)
-        if self.joints is None:
+        arm = self.arm
+        self.joints = None if arm is None else self._solve(arm, base_from_tcp, index)
+        if arm is None or self.joints is None:
             self.root.whichChild = coin.SO_SWITCH_NONE
             return
         self.root.whichChild = coin.SO_SWITCH_ALL
         self.near = self.joints
         work = work_from_base @ self.base_from_robot
-        self.at = [work @ link for link in self.arm.links(self.joints)]
+        self.at = [work @ link for link in arm.links(self.joints)]
         for place, frame in zip(self.places, self.at):
             set_matrix(place, frame)
 
@@ -85,14 +90,14 @@ class RobotView:
             if solid.getNumChildren():
                 self.bodies[name] = solid
 
-    def _solve(self, base_from_tcp: Array, index: int) -> Array | None:
+    def _solve(self, arm: core.RobotArm, base_from_tcp: Array, index: int) -> Array | None:
         """Joints in rad: those with which the path is followed, else the nearest to the last."""
         if self.followed is not None and index < len(self.followed):
             joints = np.radians(self.followed[index])
             return joints if np.isfinite(joints).all() else None
         wanted = np.linalg.inv(self.base_from_robot) @ base_from_tcp
-        rows = self.arm.inverse(wanted @ np.linalg.inv(self.flange_from_tcp), self.near)
-        inside = ((rows >= self.arm.lower) & (rows <= self.arm.upper)).all(axis=1)
+        rows = arm.inverse(wanted @ np.linalg.inv(self.flange_from_tcp), self.near)
+        inside = ((rows >= arm.lower) & (rows <= arm.upper)).all(axis=1)
         rows = rows[inside] if inside.any() else rows
         if not len(rows):
             return None

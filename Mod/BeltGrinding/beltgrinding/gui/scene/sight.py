@@ -13,7 +13,7 @@ from ...engine import InputError, core
 from ...inspection import sight
 from ...objects import belt_machine
 from ...objects.kinds import DocumentObject, Field, Point
-from ..common.kinds import Array, Surface, View3D
+from ..common.kinds import Array, Node, Surface, View3D
 from .camera import fly_to
 from .part_context import REST, design_of, tessellated
 from .shapes3d import faint
@@ -33,9 +33,9 @@ class Sight:
 
     def __init__(self, job: DocumentObject) -> None:
         self.document, self.name = job.Document, job.Name
-        self.part = None  # (points, triangles)
-        self.faded = []  # (separator, node in it)
-        self.cell = None
+        self.part: Surface | None = None
+        self.faded: list[tuple[Node, Node]] = []  # (separator, node in it)
+        self.cell: CellView | None = None
 
     def at_samples(
         self, field: Field, samples: Any, size: float, middle: Point | None = None

@@ -120,7 +120,8 @@ class DeviationView(ColouredMeshView):
         scale = (obj.ToleranceLower.Value, obj.ToleranceUpper.Value, obj.ColourLimit.Value)
         if obj.ColourBy == UNCERTAINTY and obj.ExpectedInTolerance > 0.0:
             return legend.uncertainty(obj.UncertaintyLimit.Value, obj.OutOfDate)
-        if obj.ColourBy in (MEASURED, DIFFERENCE) and getattr(obj.Simulation, "ScanFigures", ""):
+        scanned = bool(getattr(obj.Simulation, "ScanFigures", ""))
+        if obj.ColourBy in (MEASURED, DIFFERENCE) and scanned:
             return legend.scan(*scale, obj.OutOfDate, obj.ColourBy == DIFFERENCE)
         if obj.ColourBy == TEMPERATURE and obj.GreatestTemperature > 0.0:
             return legend.temperature(obj.StartTemperature, temperature_span(obj), obj.OutOfDate)

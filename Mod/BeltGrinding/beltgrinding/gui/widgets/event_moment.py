@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import FreeCADGui as Gui
 import numpy as np
 from pivy import coin
@@ -19,6 +21,9 @@ from ..scene.cell_view import CellView
 from ..scene.labels import label
 from ..scene.sight import Sight
 
+if TYPE_CHECKING:
+    from ...engine import core
+
 LEAST_SIZE, WHEELS = 20.0, 3.2  # mm; radii of the wheel that the view shows
 
 
@@ -27,9 +32,10 @@ class EventMoment:
 
     def __init__(self, job: DocumentObject) -> None:
         self.document, self.name = job.Document, job.Name
-        self.cell = self.mark = None
-        self.tinted = []  # views of cells
-        self.paths = None
+        self.cell: CellView | None = None
+        self.mark: tuple[Node, list[Node]] | None = None  # the node, and the scenes that it is in
+        self.tinted: list[CellView] = []
+        self.paths: list[core.ToolPath] | None = None
         self.sight = Sight(job)
 
     def job(self) -> DocumentObject | None:
@@ -85,7 +91,7 @@ class EventMoment:
 
     def _mark(self, event: Event, point: Array) -> None:
         self._unmark()
-        node = pin(point, COLOURS[event["severity"]], event_texts.title(event))
+        node = pin(point.tolist(), COLOURS[event["severity"]], event_texts.title(event))
         self.mark = node, [view.getSceneGraph() for view in self._views()]
         for scene in self.mark[1]:
             scene.addChild(node)

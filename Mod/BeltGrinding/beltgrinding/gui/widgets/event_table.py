@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Optional
 
 from ...cell.events import SEVERITIES
 from ...objects.kinds import Event
@@ -19,6 +19,7 @@ DETAILS = 5  # lines of text
 ICON = 14  # pixels
 NARROW = 4  # characters
 WIDE = 300  # pixels that kinds and places need side by side
+_Choice = tuple[str, str, Optional[str]]  # what is kept, its text, the severity of its icon
 
 
 class EventTable(QtGui.QWidget):
@@ -31,7 +32,9 @@ class EventTable(QtGui.QWidget):
         super().__init__()
         self.face_name = face_name
         self.chosen = lambda event: None
-        self.events, self.rows, self.fresh = [], [], False
+        self.events: Sequence[Event] = []
+        self.rows: list[Event] = []  # that are shown
+        self.fresh = False
         body = QtGui.QVBoxLayout(self)
         body.setContentsMargins(0, 0, 0, 0)
         row = QtGui.QHBoxLayout()
@@ -86,14 +89,15 @@ class EventTable(QtGui.QWidget):
     def show_events(self, events: Sequence[Event]) -> None:
         """Shows a list of events, as a Simulation has them."""
         self.events = events
-        kinds, severities = {}, {}
+        kinds: dict[str, int] = {}  # how many there are
+        severities: dict[str, int] = {}
         for event in events:
             kinds[event["kind"]] = kinds.get(event["kind"], 0) + 1
             severities[event["severity"]] = severities.get(event["severity"], 0) + 1
         titles = {event["kind"]: event_texts.title(event) for event in reversed(events)}
         worst = {e["kind"]: SEVERITIES.index(e["severity"]) for e in reversed(events)}
         every = translate("BeltGrinding", "All events ({})").format(len(events))
-        rows = [("", every, None)]
+        rows: list[_Choice] = [("", every, None)]
         for kind in sorted(kinds, key=lambda kind: (worst[kind], -kinds[kind])):
             text = f"{titles[kind]} ({kinds[kind]})"
             rows.append((kind, text, SEVERITIES[worst[kind]]))
@@ -105,7 +109,7 @@ class EventTable(QtGui.QWidget):
         self._offer(self.severity, rows)
         self._fill()
 
-    def _offer(self, choice: Widget, rows: Any) -> None:
+    def _offer(self, choice: Widget, rows: Sequence[_Choice]) -> None:
         choice.blockSignals(True)
         choice.clear()
         for data, text, severity in rows:

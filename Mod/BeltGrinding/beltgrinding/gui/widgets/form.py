@@ -101,11 +101,13 @@ class Form(QtGui.QGroupBox):
     def __init__(self, obj: DocumentObject, title: str) -> None:
         super().__init__(title)
         self.obj = obj
-        self.rows = {}  # property name: (label, widget)
+        self.rows: dict[str, tuple[Widget, Widget]] = {}  # property name: (label, widget)
         self.changed = lambda: None  # called after a property was set
-        self.unsigned = set()  # numbers that must not be negative, whatever the schema says
+        self.unsigned: set[str] = set()  # that must not be negative, whatever the schema says
         # property name: what is wrong with what stands in its field, as typed, as told, as shown
-        self.typed, self.told, self.mistakes = {}, {}, {}
+        self.typed: dict[str, str] = {}
+        self.told: dict[str, str] = {}
+        self.mistakes: dict[str, str] = {}
         self.layout_ = QtGui.QFormLayout(self)
         self.layout_.setFieldGrowthPolicy(QtGui.QFormLayout.AllNonFixedFieldsGrow)
         self.layout_.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)

@@ -149,8 +149,9 @@ class MachineDrawing(QtGui.QWidget):
             painter.setBrush(QtGui.QColor(colour))
             painter.drawPolygon(polygon(np.concatenate([upper, lower[::-1]])))
         radius = job["free_run"]["roller_radius_mm"] * scale
-        for axis in free_run.roller_axes(job) if radius > 0.0 else ():
-            self._disc(painter, polygon([axis])[0], radius, METAL)
+        if radius > 0.0:
+            for axis in free_run.roller_axes(job):
+                self._disc(painter, polygon([axis])[0], radius, METAL)
         painter.setBrush(QtCore.Qt.NoBrush)
         painter.setPen(QtGui.QPen(readable(BELT), THICK))
         painter.drawPolyline(polygon(loop))

@@ -119,8 +119,9 @@ class QuantityEntry(QtGui.QLineEdit):
     def _with_unit(self, text: str) -> float:
         alike = next((one for one in (LENGTHS, SPEEDS) if self.symbol in one), {self.symbol})
         for symbol in sorted(alike, key=len, reverse=True):
-            if text.endswith(symbol) and _number(text[: -len(symbol)]) is not None:
-                return _number(text[: -len(symbol)]) * SIZES[symbol]
+            value = _number(text[: -len(symbol)]) if text.endswith(symbol) else None
+            if value is not None:
+                return value * SIZES[symbol]
         try:
             quantity = Units.Quantity(text)
         except Exception:  # the kind differs between FreeCAD's generations

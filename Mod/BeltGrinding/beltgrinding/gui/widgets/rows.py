@@ -85,7 +85,8 @@ class Rows(QtGui.QWidget):
         """``name``: its object name; ``add``: the text of the button that adds a row, called ``add`` and the name."""
         super().__init__()
         self.setObjectName(name)
-        self.changed, self.check, self.rows = lambda: None, lambda values: None, []
+        self.changed, self.check = lambda: None, lambda values: None
+        self.rows: list[Row] = []
         body = QtGui.QVBoxLayout(self)
         body.setContentsMargins(0, 0, 0, 0)
         body.setSpacing(4)

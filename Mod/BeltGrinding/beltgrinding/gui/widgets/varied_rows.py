@@ -43,7 +43,8 @@ class VariedRows(QtGui.QWidget):
     def __init__(self, entries: Iterable[Json], texts: Texts) -> None:
         super().__init__()
         self.setObjectName("varied")
-        self.changed, self.texts, self.rows = lambda: None, texts, []
+        self.changed, self.texts = lambda: None, texts
+        self.rows: list[_Row] = []
         self.layout_ = QtGui.QVBoxLayout(self)
         self.layout_.setContentsMargins(0, 0, 0, 0)
         self.layout_.setSpacing(6)
@@ -198,7 +199,7 @@ def _text(value: Any) -> str:
 
 def _values(text: str) -> list[Any]:
     """Numbers and words of a text, between blanks or semicolons; a decimal comma is one."""
-    found = []
+    found: list[float | bool | str] = []
     for word in text.replace(";", " ").replace("…", " ").replace("−", "-").split():
         try:
             found.append(float(word.replace(",", ".")))

@@ -7,7 +7,7 @@ import pytest
 
 from beltgrinding.base.frames import from_abc
 from beltgrinding.engine import InputError
-from beltgrinding.programs import Motion, read_program, write_program
+from beltgrinding.programs import Motion, patch_program, read_program, write_program
 from beltgrinding.programs.force_device import ForceDevice, device_of
 
 KRL, RAPID, URSCRIPT = "KUKA KRL", "ABB RAPID", "URScript"
@@ -367,3 +367,46 @@ def test_a_device_comes_from_a_file_or_a_job(tmp_path):
         device_of(file)
     with pytest.raises(InputError, match="no JSON"):
         device_of("{kind}")
+
+
+def changed(tmp_path, suffix, given, forces, changes, form=""):
+    """(lines that are new, forces that are read) after a patch of a program that is written with ``forces``."""
+    path, output = tmp_path / f"p{suffix}", tmp_path / "new" / f"p{suffix}"
+    output.parent.mkdir()
+    write_program(path, None, moves(forces), form=form, force_device=given)
+    device = device_of(given)
+    before = read_program(path, force_device=device).motions
+    wanted = [{"line": before[k].line, "force_N": force} for k, force in changes.items()]
+    patch_program(path, wanted, output, device)
+    old, new = path.read_text().splitlines(), output.read_text().splitlines()
+    return [line for line in new if line not in old], pressed(output, given)
+
+
+@pytest.mark.parametrize("suffix", [".src", ".mod", ".script"])
+@pytest.mark.parametrize("given", [ANALOG, CALL, TEMPLATE])
+@pytest.mark.parametrize("form", ["", "spline"])
+def test_a_changed_force_goes_back_into_the_program(tmp_path, suffix, given, form):
+    forces = [5.0, 5.0, 30.0, 30.0, 12.0]
+    changes = {1: 7.5, 4: 33.5}  # motions from 0, a PTP
+    lines, found = changed(tmp_path, suffix, given, forces, changes, form)
+    assert found == [7.5, 5.0, 30.0, 33.5, 12.0]
+    assert len(lines) >= 2
+
+
+def test_a_force_that_governs_the_named_motions_only_is_replaced(tmp_path):
+    lines, found = changed(tmp_path, ".src", OUT, [5.0, 5.0, 30.0], {1: 6.0, 2: 6.0})
+    assert found == [6.0, 6.0, 30.0] and lines == ["$ANOUT[1]=0.06"]
+
+
+def test_a_force_in_a_spline_is_triggered(tmp_path):
+    lines, found = changed(tmp_path, ".src", OUT, [5.0, 5.0, 5.0], {2: 6.0}, "spline")
+    start = "TRIGGER WHEN PATH=0 ONSTART DELAY=0 DO $ANOUT[1]="
+    assert found == [5.0, 6.0, 5.0] and lines == [f"{start}0.06", f"{start}0.05"]
+
+
+def test_a_force_without_a_device_is_refused_as_before(tmp_path):
+    path = tmp_path / "p.src"
+    write_program(path, None, moves([5.0, 5.0]), force_device=OUT)
+    line = read_program(path).motions[1].line
+    with pytest.raises(InputError, match="no pressing force"):
+        patch_program(path, [{"line": line, "force_N": 9}], tmp_path / "q.src")

@@ -4,6 +4,7 @@ from pathlib import Path
 
 from . import background, outputs, plan, settings
 from .messages import print_text
+from .program import add_form
 
 PROGRAM = "raster.src"
 
@@ -39,6 +40,7 @@ def add(commands):
         metavar="NAME",
         help=f"the program's file in the folder; its suffix says the language ({PROGRAM})",
     )
+    add_form(grind)
     grind.add_argument("-q", "--quiet", action="store_true", help="no progress, no summary")
     outputs.add(grind)
     grind.set_defaults(do=_grind)
@@ -71,7 +73,9 @@ def _grind(arguments):
     found = background.run(work, arguments.quiet)
     apply.write(found.plan, arguments.output, [arguments.part], arguments.force)
     arguments.messages.print_warnings(found.laid["warnings"])
-    notes = _write_program(found.plan, Path(arguments.output, arguments.program), arguments.force)
+    notes = _write_program(
+        found.plan, Path(arguments.output, arguments.program), arguments.force, arguments.form
+    )
     arguments.messages.print_notes(notes)
     if not arguments.quiet:
         print_text(plan.text(plans.summary(found.plan)))
@@ -143,7 +147,7 @@ def _line(one):
     )
 
 
-def _write_program(found, file, force):
+def _write_program(found, file, force, form):
     import os
 
     from ..base.files import cannot_be_written
@@ -151,7 +155,7 @@ def _write_program(found, file, force):
     from ..job.poses import listed_poses
     from ..programs.writers.writer import write_program
     from ..raster import raster_path
-    from .program import _frame_words
+    from .program import _as_followed, _frame_words
 
     if os.path.lexists(file) and not force and not (file.parent / "plan.json").exists():
         raise InputError(
@@ -161,6 +165,7 @@ def _write_program(found, file, force):
         )
     laid = listed_poses(found.job["programs"][0]["poses"], "raster")
     try:
-        return write_program(file, None, raster_path.program(laid, **_frame_words(found.job)))
+        made = raster_path.program(laid, **_frame_words(found.job))
+        return write_program(file, None, made, **_as_followed(form, found.job))
     except OSError as error:
         raise cannot_be_written(file, error) from None

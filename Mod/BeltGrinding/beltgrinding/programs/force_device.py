@@ -10,17 +10,18 @@ from __future__ import annotations
 import contextlib
 import json
 import math
+import operator
 import re
 import string
 import threading
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, is_dataclass
 from pathlib import Path
 from typing import Any, Optional, Union
 
 import numpy as np
 
-from ..base import schemas
+from ..base import records, schemas
 from ..base.files import in_file
 from ..base.frames import from_data
 from ..base.kinds import Floats, Json, known
@@ -59,6 +60,7 @@ NAME = re.compile(r"[A-Za-z]\w{0,31}", re.ASCII)
 TOKEN = re.compile(r"\w+|\S")
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 COMMENT_IN_BRACKETS = re.compile(r"(\[\s*\d+)\s*:[^\]]*\]")  # AO[1:Force]
+ASSIGNMENT = re.compile(r"\s*[$\w.\[\]]+\s*=")
 # Where the force changes when the next motion begins, as the KRL writer says it.
 TRIGGER = re.compile(
     r"TRIGGER\s+WHEN\s+(?:(?:PATH)\s*=\s*0(?:\.0*)?\s+ONSTART|DISTANCE\s*=\s*0)\s+DELAY\s*=\s*[-+]?\d+\s+DO\s+"
@@ -160,6 +162,15 @@ class ForceDevice:
             round(value, digits) + 0.0, min_digits=decimals, trim="k" if decimals else "-"
         )
         return text.format(name=self.name, output=self.output, value=number)
+
+    def triggered(self, statement: str, in_spline: bool) -> str:
+        """A KRL statement as it may stand between motions that pass into each other: an assignment would stop the
+        advance run in which a corner is rounded, and is not allowed in a spline block."""
+        priority = "" if ASSIGNMENT.match(statement) else " PRIO=-1"  # of a subprogram
+        if not in_spline:
+            return f"TRIGGER WHEN DISTANCE=0 DELAY=0 DO {statement}{priority}"
+        delay = -round(1000.0 * self.dead_time_s)
+        return f"TRIGGER WHEN PATH=0 ONSTART DELAY={delay} DO {statement}{priority}"
 
     def force_of(self, language: str, statement: str) -> float | None:
         """The force in N that a statement with a number sets; None where it is no statement of the device."""
@@ -291,13 +302,16 @@ def device_of(given: Given, **more: Any) -> ForceDevice | None:
     return device if device.kind != "none" else None
 
 
-def of_job(job: Json) -> ForceDevice | None:
-    """The ForceDevice of a validated job, which knows its cell; None where it has none. Raises InputError."""
-    machine, cell = job["belt_machine"], job["cell"]
+def of_job(job: Any) -> ForceDevice | None:
+    """The ForceDevice of a validated job (Json or a record), which knows its cell; None where it has none. Raises InputError."""
+    read: Callable[[Any, str], Any] = getattr if is_dataclass(job) else operator.getitem
+    machine, cell = (records.plain(read(job, key)) for key in ("belt_machine", "cell"))
+    if machine.get("force_device", {}).get("kind", "none") == "none":
+        return None
     held = cell["holding"] == "part_in_hand"
     frame = from_data(cell.get("base_from_contact" if held else "tcp_from_contact"))
-    given = machine.get("force_device", {})
-    return device_of(given, force_N=float(machine["force_N"]), contact=frame, held=held)
+    force = float(machine["force_N"])
+    return device_of(machine["force_device"], force_N=force, contact=frame, held=held)
 
 
 def _loose(text: str) -> str:

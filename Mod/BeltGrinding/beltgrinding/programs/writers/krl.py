@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from .sheet import Sheet
 
 NAME = re.compile(r"[A-Za-z]\w{0,23}$", re.ASCII)
-ASSIGNMENT = re.compile(r"\s*[$\w.\[\]]+\s*=")
 # A Cartesian PTP without status and turn is reached in the posture that the robot happens to have.
 FIRST = [
     "; The next PTP has no status and turn (S, T): they are not known here. Add them, or put a PTP with the",
@@ -98,7 +97,8 @@ def text(sheet: Sheet) -> bytes:
             lines.append("ENDSPLINE")
             inside = False
         if pressed[k]:
-            head.append(_switched(sheet, pressed[k], inside, rounded_before))
+            plain = pressed[k].startswith(";") or not (inside or rounded_before)
+            head.append(pressed[k] if plain else known(sheet.device).triggered(pressed[k], inside))
         own = ""
         if wanted is not None and wanted != speed and inside:
             own = f" WITH $VEL.CP={wanted}"
@@ -117,18 +117,6 @@ def text(sheet: Sheet) -> bytes:
     lines += ["ENDSPLINE"] if inside else []
     lines += ["END", ""]
     return "\r\n".join(lines).encode("ascii")
-
-
-def _switched(sheet: Sheet, text: str, inside: bool, rounded_before: bool) -> str:
-    """A statement or comment that sets the force, as it may stand before a motion: an assignment would stop the
-    advance run in which a corner is rounded, and is not allowed in a spline block."""
-    if text.startswith(";") or not (inside or rounded_before):
-        return text
-    priority = "" if ASSIGNMENT.match(text) else " PRIO=-1"  # of a subprogram
-    if not inside:
-        return f"TRIGGER WHEN DISTANCE=0 DELAY=0 DO {text}{priority}"
-    delay = -round(1000.0 * known(sheet.device).dead_time_s)
-    return f"TRIGGER WHEN PATH=0 ONSTART DELAY={delay} DO {text}{priority}"
 
 
 def _pose(frame: Floats, digits: Digits) -> str:

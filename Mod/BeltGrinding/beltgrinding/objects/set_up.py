@@ -127,10 +127,11 @@ def import_program(
     program = document.addObject("Path::FeaturePython", "RobotPath")
     with removed_on_error(program):
         robot_path.RobotPath(program)
+        if job is not document:  # whose force device the file may use
+            program.Machine = child(job, belt_machine.BeltMachine)
         robot_path.load_program(program, path, **properties)
         program.Label = Path(path).stem
         if job is not document:
-            program.Machine = child(job, belt_machine.BeltMachine)
             job.addObject(program)
         program.recompute()
     if job is not document:

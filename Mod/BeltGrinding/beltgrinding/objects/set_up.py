@@ -185,7 +185,7 @@ def make_raster(
 
 
 def export_program(path: DocumentObject, file: Path | str, **options: Any) -> Any:
-    """Writes a RobotPath as a new robot program (.src, .mod, .script, .csv), overrides applied.
+    """Writes a RobotPath as a new robot program (.src, .mod, .script, .ls, .jbi, .csv), overrides applied.
 
     Poses are written as they are, arcs as the chords they were cut into. Tool and base are set as the
     path's ``ProgramTool`` and ``ProgramBase`` say; where the belt machine has a robot, their numbers are

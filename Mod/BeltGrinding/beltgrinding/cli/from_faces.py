@@ -76,7 +76,7 @@ def _grind(arguments):
     notes = _write_program(
         found.plan, Path(arguments.output, arguments.program), arguments.force, arguments.form
     )
-    arguments.messages.print_notes(notes)
+    arguments.messages.print_written(notes)
     if not arguments.quiet:
         print_text(plan.text(plans.summary(found.plan)))
         print_text(f"program, job and result in {arguments.output}")

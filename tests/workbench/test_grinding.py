@@ -74,7 +74,7 @@ def test_a_part_alone_becomes_a_program(tmp_path, capsys):
     begin = ["grind", str(tmp_path / "plate.brep"), "-o", str(out), "--stock", "0.2", *options]
     assert cli.main(begin) == 0
     printed = capsys.readouterr().out
-    assert "passes " in printed and "planned: " in printed
+    assert "passes  apart mm" in printed and "planned: " in printed
     names = {path.name for path in out.iterdir()}
     assert names == {"plate.csv", "job.json", "feeds.csv", "plan.json", "plan.png", "result"}
     plan = json.loads((out / "plan.json").read_text())

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from . import background, outputs
+from . import background, outcome, outputs
 from .messages import print_text
 
 
@@ -13,6 +13,7 @@ def add(commands):
     run.add_argument("-o", "--output", required=True, help="folder for the results")
     run.add_argument("--belt", help="JSON file that carries the belt's use from job to job")
     run.add_argument("-q", "--quiet", action="store_true", help="no progress, no summary")
+    outcome.add(run)
     outputs.add(run)
     run.set_defaults(do=_run)
 
@@ -21,6 +22,7 @@ def _run(arguments):
     from ..job import inputs, law, load as jobs
     from ..simulation import result_folder, run as runs
 
+    outcome.check(arguments)
     given = jobs.load(arguments.job)
     used = [path for path in (arguments.job, arguments.belt) if path]
     files = inputs.files(given)
@@ -43,6 +45,7 @@ def _run(arguments):
         law.write_belt(arguments.belt, result.summary["belt"])
     if not arguments.quiet:
         _report(result, arguments, len(said))
+    outcome.tell(arguments, result)
 
 
 def _report(result, arguments, said):
@@ -63,4 +66,3 @@ def _report(result, arguments, said):
         f"results in {arguments.output}"
     )
     print_text(verdict.text(result.verdict))
-    arguments.messages.print_events(result.events, result.job)

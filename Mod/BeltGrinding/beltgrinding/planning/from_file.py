@@ -18,6 +18,7 @@ from ..cell.tool_path import tool_path
 from ..engine import Fact, core
 from ..job import load as jobs, poses, resolution
 from ..job.poses import program_name
+from ..job.robot_time import timed
 from ..job.typed import typed
 from ..presets import robot as robots
 from ..simulation import convergence, run as runs
@@ -65,21 +66,19 @@ class _Read(NamedTuple):
     short: Facts
 
 
-def with_programs(job: Json, programs: Sequence[Json], folder: Path | str) -> dict[str, Any]:
-    """A validated job with other programs, whose files are relative to ``folder``; validated. Raises InputError."""
-    return jobs.validate({**job, "programs": [dict(one) for one in programs]}, folder)
+def with_programs(
+    job: Json, programs: Sequence[Json], folder: Path | str, own_time: bool = False
+) -> dict[str, Any]:
+    """A validated job with other programs, whose files are relative to ``folder``, under its robot's time; ``own_time``:
+    under the job's own. Validated. Raises InputError."""
+    found = jobs.validate({**job, "programs": [dict(one) for one in programs]}, folder)
+    return found if own_time else timed(found)
 
 
 def at_half(job: Json, context: core.RunContext) -> dict[str, Any]:
     """A validated job at full resolution, at half its spacing, step and contact cells."""
     whole = resolution.with_mode(rounds.settled(job, context), resolution.FULL)
     return convergence.scaled(whole, "fine")
-
-
-def simulate(job: Json, context: Context = None) -> Result:
-    """The ``Result`` of a validated job ``at_half``, with its influence and shifts. Raises InputError, Cancelled."""
-    context = context or core.RunContext()
-    return runs.run(at_half(job, context), context, influence=True, shifts=True)
 
 
 def check(
@@ -100,11 +99,10 @@ def check(
     notes: Facts = []
     # Forces that a program's own file has no place for keep its poses in the job (``apply``).
     missing = not best.forces and bool(best.short) and not any(found.commands.sources)
-    coarse = abs(best.sampling) > SAMPLING
+    coarse = abs(best.sampling) > SAMPLING or (bool(best.short) and not missing)
     if missing or coarse:
-        more, start = _goes_on(best, missing, coarse, context)
-        part = context.part(0.3, 0.7)
-        planned = rounds.plan(more[0], more[1], part, told, start=start)
+        job, settings, start = _goes_on(best, missing, coarse, context)
+        planned = rounds.plan(job, settings, context.part(0.3, 0.7), told, start=start)
         second = _read(planned, write(planned), folder, coarse, context.part(0.7, 0.9))
         _tell(told, second)
         better = second.figures["in_tolerance"] > best.figures["in_tolerance"]
@@ -115,7 +113,9 @@ def check(
             write(best.plan)  # the first files again
     plan = best.plan._replace(after=best.result, why=_why(best, context.part(0.9, 0.9)))
     if before:
-        first = simulate(found.commands.job, context.part(0.9, 1.0))
+        part = context.part(0.9, 1.0)
+        given = found.commands.job if _own_time(found) else timed(found.commands.job)
+        first = runs.run(at_half(given, part), part, shifts=True)
         checked = {"before": figures(first, plan.settings), "after": best.figures}
         plan = plan._replace(before=first, checked=checked)
     if abs(best.sampling) > SAMPLING:
@@ -137,6 +137,11 @@ def check(
     return Checked(plan, entry, best.short, notes)
 
 
+def _own_time(plan: Plan) -> bool:
+    """Whether a plan is for the job's own time law, as for study."""
+    return bool(plan.settings.get("timing") == "job")
+
+
 def _tell(told: Callable[[Json], object] | None, read: _Read) -> None:
     if told is not None:
         told({**read.figures, "from_file": True})
@@ -146,7 +151,7 @@ def _read(
     plan: Plan, entries: Sequence[Json], folder: Path | str, half: bool, context: core.RunContext
 ) -> _Read:
     """``half``: the plan is at half the spacing already, and its files are simulated as they are."""
-    data = with_programs(plan.commands.job, entries, folder)
+    data = with_programs(plan.commands.job, entries, folder, _own_time(plan))
     part = context.part(0.0, 0.6)
     fine = data if half else at_half(data, context)
     result = runs.run(fine, part, influence=True, shifts=True)
@@ -159,7 +164,12 @@ def _read(
     if half:  # the cheap one of the two levels
         coarse = runs.run(convergence.scaled(data, "coarse"), other, shifts=True)
         sampling = told["in_tolerance"] - figures(coarse, plan.settings)["in_tolerance"]
-    elif there and forces and _same(mine, its, "feeds", FEED) and _in_place(mine, its):
+    elif (
+        forces
+        and plan.after.job["simulation"]["timing"] == data["simulation"]["timing"]
+        and _same(mine, its, "feeds", FEED)
+        and _in_place(mine, its)
+    ):
         sampling = told["in_tolerance"] - planned["in_tolerance"]
     else:
         same = runs.run(at_half(plan.job, context), other, shifts=True)
@@ -181,22 +191,25 @@ def _read(
 
 def _goes_on(
     best: _Read, missing: bool, coarse: bool, context: core.RunContext
-) -> tuple[tuple[Json, Json], tuple[Floats, Floats]]:
-    """((job, settings), start) of the planning that goes on from a plan whose files are read. ``missing``: with the
+) -> tuple[Json, Json, tuple[Floats, Floats] | None]:
+    """(job, settings, start) of the planning that goes on from a plan whose files are read. ``missing``: with the
     forces that the files have, and no others; ``coarse``: at half the spacing."""
     plan = best.plan
     job = plan.commands.job
     settings: dict[str, Any] = {**plan.settings, "check": False, "rounds": ROUNDS}
-    factors = plan.factors
+    start: tuple[Floats, Floats] | None = plan.new, plan.factors
     if missing:
         listed = [{"poses": poses.list_poses(one)} for one in _arrays(best.data)]
         kept = [{k: v for k, v in one.items() if k == "name"} for one in job["programs"]]
         job = {**job, "programs": [{**a, **b} for a, b in zip(kept, listed)]}
         settings.update(force_min_N=0.0, force_max_N=0.0)
-        factors = np.ones(len(factors))
+        if len(listed[0]["poses"]) != len(plan.commands.group):  # poses are left out
+            start = None
+        else:
+            start = plan.new, np.ones(len(plan.new))
     if coarse:
         job = at_half(job, context)
-    return (job, settings), (plan.new, factors)
+    return job, settings, start
 
 
 def _planned_on(first: _Read, second: _Read, missing: bool, coarse: bool, better: bool) -> Fact:

@@ -161,6 +161,28 @@ def plan(
     )
 
 
+def against(found: Plan, data: Json, context: Context = None) -> Plan:
+    """A ``Plan`` of other passes with a job as it was, its own programs among it, as what was before. ``better`` is by
+    that. A job whose programs are no path yet changes nothing. Raises Cancelled."""
+    context = context or core.RunContext()
+    part = context.part(1.0, 1.0)
+    settings = found.settings
+    try:
+        job = resolution.with_mode(settled(data, part), resolution.FULL)
+        before = runs.run(job, part, shifts=True)
+    except InputError:
+        return found
+    first, after = (figures(one, settings) for one in (before, found.after))
+    better = _better(after, first, settings) or (
+        settings["goal"] == "time" and least_time.saves(after, first, settings)
+    )
+    checked = dict(found.checked)
+    if checked:
+        fine = runs.run(convergence.scaled(job, "fine"), part, shifts=True)
+        checked["before"] = figures(fine, settings)
+    return found._replace(before=before, better=better, checked=checked)
+
+
 def _by_rounds(
     trials: Trials, old: Floats, start: tuple[Floats, Floats] | None, tries: int, whole: float
 ) -> Trial:

@@ -9,11 +9,12 @@ from beltgrinding import cli
 from beltgrinding.engine import core
 from beltgrinding.job import load as jobs, poses
 from beltgrinding.job.robot_time import timed
-from beltgrinding.planning import from_file, rounds
+from beltgrinding.planning import from_file, grinding, rounds
 from beltgrinding.programs.writers.writer import write_program
 from beltgrinding.raster import raster_path
 from beltgrinding.simulation import convergence, run as runs
 from test_grinding import PASSES, job_of
+from test_job import plate
 
 QUICK = {"rounds": 1, "check": False, "force_min_N": 6.0}
 
@@ -143,3 +144,80 @@ def test_verify_says_what_a_file_does(tmp_path, capsys):
     assert capsys.readouterr().out.splitlines()[-1].startswith("PASS: 100.0 % in tolerance")
     assert cli.main(["verify", "none.src", "--job", str(tmp_path / "job.json")]) == 2
     assert "none.src" in capsys.readouterr().err
+
+
+def share_told(line):
+    """In percent, as printed."""
+    return float(line.partition(" %")[0].rpartition(" ")[2])
+
+
+def test_grind_tells_one_set_of_figures_and_they_are_the_files(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(grinding, "TRIES", 1)
+    (tmp_path / "plate.brep").write_text(plate().write_brep())
+    out = tmp_path / "out"
+    begin = ["grind", str(tmp_path / "plate.brep"), "-o", str(out), "--stock", "0.2"]
+    begin += ["--set", "rounds=1", "--program", "plate.csv"]
+    assert cli.main(begin) == 0
+    printed = capsys.readouterr()
+    lines = printed.out.splitlines()
+    data = json.loads((out / "plan.json").read_text())
+    summary = json.loads((out / "result" / "summary.json").read_text())
+    verdict = json.loads((out / "result" / "verdict.json").read_text())
+    told = data["from_file"]["in_tolerance"]
+    assert data["after"]["in_tolerance"] == summary["in_tolerance_area_share"] == told
+    assert verdict["in_share"] == pytest.approx(told, abs=1e-9)
+    planned = next(line for line in lines if line.startswith("planned: "))
+    rows = [line.split() for line in lines if line.lstrip().startswith("file ")]
+    assert share_told(planned) == share_told(lines[-1]) == float(f"{100 * told:.1f}")
+    assert f"{100 * told:.1f}" in [row[1] for row in rows]
+    assert lines[-1].startswith("FAIL: ") and lines[-1].endswith(" collisions")
+    assert "error: gouge" in printed.err
+    header = next(k for k, line in enumerate(lines) if line.startswith("round "))
+    assert all(len(line) >= len("round  in tol. %") for line in lines[header : header + 3])
+    # A stranger finds the same, at half the spacing that the plan has.
+    capsys.readouterr()
+    job = str(out / "job.json")
+    assert cli.main(["verify", str(out / "plate.csv"), "--job", job]) == 1
+    again = share_told(capsys.readouterr().out.splitlines()[-1])
+    assert again == pytest.approx(share_told(lines[-1]), abs=0.5)
+    assert cli.main([*begin, "--check", "-q"]) == 1
+    assert cli.main([*begin, "--check", "--wanted", "0"]) == 2
+
+
+def test_plan_reads_the_programs_that_it_wrote(tmp_path, capsys):
+    data, file = laid_on(job_of(), tmp_path)
+    data["programs"] = [{"file": str(file)}]
+    (tmp_path / "job.json").write_text(json.dumps(data))
+    out = tmp_path / "out"
+    begin = ["plan", str(tmp_path / "job.json"), "-o", str(out), "--set", "rounds=1"]
+    assert cli.main(begin) == 0
+    lines = capsys.readouterr().out.splitlines()
+    plan = json.loads((out / "plan.json").read_text())
+    told = plan["from_file"]["in_tolerance"]
+    result = json.loads((out / "result" / "summary.json").read_text())
+    assert result["in_tolerance_area_share"] == told == plan["after"]["in_tolerance"]
+    assert plan["checked"]["after"]["in_tolerance"] == told > plan["before"]["in_tolerance"]
+    assert result["spacing_mm"] == 0.5
+    job = jobs.load(out / "job.json")
+    assert job["programs"][0]["file"] == str(out / "path.csv")
+    alone = runs.run(convergence.scaled(timed(job), "fine"))
+    assert alone.summary["in_tolerance_area_share"] == told
+    assert share_told(lines[-1]) == float(f"{100 * told:.1f}")
+
+
+def test_a_coarse_sampling_is_told_and_planned_on_at_half(tmp_path):
+    """Samples as far apart as the contact is long do not see what the passes leave between them."""
+    job = {**job_of(), "sampling": {**job_of()["sampling"], "spacing_mm": 6.0}}
+    laid = raster_path.raster(job_of(), {**PASSES, "step_over_mm": 14.0})
+    data = {**timed(job), "programs": [{"poses": poses.list_poses(laid), "unresolved": 0}]}
+    found = rounds.plan(data, {"rounds": 1, "check": False})
+    write, written = writer(tmp_path, ".csv")
+    rows = []
+    checked = from_file.check(found, tmp_path, write, told=rows.append, before=False)
+    read = [one for one in rows if one.get("from_file")]
+    assert abs(read[0]["in_tolerance"] - found.after.summary["in_tolerance_area_share"]) > 0.01
+    assert len(read) == 2 and "at half the spacing" in str(checked.notes[0])
+    assert written[1].job["sampling"]["spacing_mm"] == 3.0
+    assert checked.entry["in_tolerance"] == max(one["in_tolerance"] for one in read)
+    if abs(checked.entry["sampling"]) > from_file.SAMPLING:
+        assert f"+-{100 * abs(checked.entry['sampling']):.1f} points" in str(checked.notes[-1])

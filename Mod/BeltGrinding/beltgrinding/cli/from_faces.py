@@ -4,6 +4,7 @@ from pathlib import Path
 
 from . import background, outcome, outputs, plan, rounds_table, settings
 from .messages import print_text
+from .program import add_form
 
 PROGRAM = "raster.src"
 
@@ -39,6 +40,7 @@ def add(commands):
         metavar="NAME",
         help=f"the program's file in the folder; its suffix says the language ({PROGRAM})",
     )
+    add_form(grind)
     grind.add_argument("-q", "--quiet", action="store_true", help="no progress, no summary")
     outcome.add(grind)
     outputs.add(grind)
@@ -72,8 +74,8 @@ def _grind(arguments):
     def write(found, entry=None):
         """Entries of the program's file in a job."""
         apply.write(found, out, [arguments.part], arguments.force, entry)
-        notes[:] = _write_program(found, program, arguments.force)
-        return [{"name": "raster", "file": program.name}]
+        notes[:] = _write_program(found, program, arguments.force, arguments.form)
+        return [{"file": program.name}]
 
     def work(context):
         job, first = _job(arguments, context)
@@ -155,7 +157,7 @@ def _faces(text):
         ) from None
 
 
-def _write_program(found, file, force):
+def _write_program(found, file, force, form):
     import os
 
     from ..base.files import cannot_be_written
@@ -163,7 +165,7 @@ def _write_program(found, file, force):
     from ..job.poses import listed_poses
     from ..programs.writers.writer import write_program
     from ..raster import raster_path
-    from .program import _frame_words
+    from .program import _as_followed, _frame_words
 
     if os.path.lexists(file) and not force and not (file.parent / "plan.json").exists():
         raise InputError(
@@ -173,6 +175,7 @@ def _write_program(found, file, force):
         )
     laid = listed_poses(found.job["programs"][0]["poses"], "raster")
     try:
-        return write_program(file, None, raster_path.program(laid, **_frame_words(found.job)))
+        made = raster_path.program(laid, **_frame_words(found.job))
+        return write_program(file, None, made, **_as_followed(form, found.job))
     except OSError as error:
         raise cannot_be_written(file, error) from None

@@ -155,7 +155,7 @@ def _patched(
         if "values" in program and not isinstance(program["values"], str):
             raise InputError("planning.inline_values", "its values stand in the job")
         if wanted:
-            patch(source, wanted, output)
+            patch(source, wanted, output, found.commands.device)
         else:
             write_whole(output, Path(source).read_bytes())
     except OSError as error:

@@ -15,6 +15,7 @@ from ..job.poses import program_name
 from ..job.settings import Job
 from ..job.typed import typed
 from ..presets import robot as robots
+from ..programs.force_device import of_job
 
 
 class Commands:
@@ -29,6 +30,7 @@ class Commands:
         names. Raises InputError for lines that no motion has."""
         self.job: Json = records.plain(job)  # as data, which plans hand out
         job = typed(job)
+        self.device = of_job(job)  # by which programs set their forces
         self.sources = sources or [program.file for program in job.programs]
         self.arrays: list[dict[str, Array]] = []
         warnings: Facts = []
@@ -40,6 +42,7 @@ class Commands:
                     warnings,
                     robots.pose_function(self.job["robot"]),
                     job.cell.holding,
+                    self.device,
                 )
             )
         groups: list[int] = []
@@ -176,6 +179,9 @@ class Commands:
         given = np.concatenate([a["forces"] for a in self.arrays])
         factor = np.ones(len(given)) if factors is None else factors[self.group]
         forces = np.where(self.rapid | (factor == 1.0), given, self.forces * factor)
+        if self.device is not None:
+            for k in np.flatnonzero(~self.rapid & (forces >= 0.0)):
+                forces[k] = self.device.settable(float(forces[k]))
         programs = []
         begin = 0
         for program, arrays in zip(self.job["programs"], self.arrays):

@@ -33,12 +33,8 @@ if TYPE_CHECKING:
 SHORT = 0.005  # of the area, less than planned: told, and planned on
 SAMPLING = 0.01  # of the area, by which half the spacing may change the share
 PLACES = 3  # that are told where a file falls short
-PLACE_MM, TURN, FEED, FORCE_N = (
-    2e-3,
-    1e-4,
-    0.01,
-    0.1,
-)  # that a file may round: mm, of a matrix, relative, N
+# What a file may round: mm, of a rotation's matrix, mm/s, N.
+PLACE_MM, TURN, FEED_MM_S, FORCE_N = 2e-3, 1e-4, 0.1, 0.1
 REACHED = 0.95  # of its feed, on a motion: less is not reached
 ROUNDS = 3  # of the planning that goes on
 
@@ -167,7 +163,7 @@ def _read(
     elif (
         forces
         and plan.after.job["simulation"]["timing"] == data["simulation"]["timing"]
-        and _same(mine, its, "feeds", FEED)
+        and _same(mine, its, "feeds", FEED_MM_S)
         and _in_place(mine, its)
     ):
         sampling = told["in_tolerance"] - planned["in_tolerance"]
@@ -259,11 +255,11 @@ def _arrays(data: Json) -> list[dict[str, Array]]:
 
 
 def _same(mine: list[dict[str, Array]], its: list[dict[str, Array]], name: str, by: float) -> bool:
-    """Whether a file has what is planned on all motions that grind; ``by``: N of forces, a share of feeds."""
+    """Whether a file has what is planned, but for ``by``, on all motions that grind."""
     for a, b in zip(mine, its):
         grinds = ~a["rapid"]
         one, other = a[name][grinds], b[name][grinds]
-        if (abs(one - other) > (by if name == "forces" else by * abs(one))).any():
+        if (abs(one - other) > by).any():
             return False
     return True
 
@@ -336,7 +332,7 @@ def _reason(mine: dict[str, Array], its: dict[str, Array], reached: Floats, pose
             has=has,
         )
     feed = float(mine["feeds"][pose])
-    if abs(feed - its["feeds"][pose]) > FEED * feed:
+    if abs(feed - its["feeds"][pose]) > FEED_MM_S:
         return Fact(
             "planning.feed_not_in_file",
             "planned with {feed:.1f} mm/s, and the file has {has:.1f}",

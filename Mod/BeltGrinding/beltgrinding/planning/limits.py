@@ -8,8 +8,9 @@ profiles are found (Bobrow, Dubowsky and Gibson, Int. J. Robotics Research 4, 19
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from ..base.kinds import Array, Floats, Json, known
 from ..engine import InputError
 from ..job.settings import Job
 from ..job.typed import typed
+from ..programs.force_device import of_job
 
 if TYPE_CHECKING:
     from ..simulation.result import Result
@@ -33,6 +35,35 @@ YIELDING = 0.5  # least exponent with which pressure follows a lowered force: th
 # Two commands each (pairs,), and a number of both (pairs,).
 Edges: TypeAlias = "tuple[Array, Array, Floats]"
 Allowed: TypeAlias = Callable[[float, float], float]  # of a value and mm: the neighbour's
+
+
+def within_device(job: Job, settings: dict[str, Any]) -> dict[str, Any]:
+    """The settings of a plan within what the job's force device sets: its range, and its ramp, which is also the
+    default. Raises InputError where nothing is left."""
+    device = of_job(job)
+    if device is None:
+        return settings
+    least, greatest = settings["force_min_N"], settings["force_max_N"]
+    most = device.greatest_N or math.inf
+    if (least and least > most) or 0.0 < greatest < device.least_N:
+        raise InputError(
+            "planning.device_range",
+            "plan: forces of {least:g} to {greatest:g} N are beyond the force device's, {low:g} to {high:g} N: change "
+            "force_min_N and force_max_N, or belt_machine.force_device",
+            least=least,
+            greatest=greatest or most,
+            low=device.least_N,
+            high=most,
+        )
+    ramp = device.ramp_N_s or math.inf
+    changed = {
+        "force_min_N": max(least, device.least_N) if least else least,
+        "force_max_N": min(greatest, most) if greatest else greatest,
+        "force_change_N_s": min(settings["force_change_N_s"] or ramp, ramp),
+    }
+    if math.isinf(changed["force_change_N_s"]):
+        changed["force_change_N_s"] = 0.0
+    return {**settings, **changed}
 
 
 def refuse(settings: Json) -> None:

@@ -111,6 +111,7 @@ def plan(
     _refuse(job, settings)
     sure.refuse(job, settings)
     limits.refuse(settings)
+    settings = limits.within_device(job, settings)
     whole_job = resolution.with_mode(settled(data, context), resolution.FULL)
     searched = resolution.with_mode(whole_job, settings["search_resolution"])
     commands = Commands(searched, settings, sources)

@@ -27,9 +27,11 @@ from ..program import Fact, ProgramError, bytes_of, name_of
 from ..languages.krl.data_lists import others as krl_lists
 from ..languages.rapid import modules as rapid_modules
 from ..registry import read_program
+from . import forces
 from .text import SMALL, Overlap, Shift, Source, Work
 
 if TYPE_CHECKING:
+    from ..force_device import ForceDevice
     from ..program import Motion, Program
 
 COLUMNS = ("speed_mm_s", "force_N", "dx_mm", "dy_mm", "dz_mm", "tool_dz_mm")
@@ -184,14 +186,17 @@ def read_changes(path: Path | str) -> list[dict[str, Any]]:
 
 
 def patch(
-    path: Path | str, changes: Path | str | Iterable[Json], output: Path | str
+    path: Path | str,
+    changes: Path | str | Iterable[Json],
+    output: Path | str,
+    force_device: ForceDevice | None = None,
 ) -> list[dict[str, Any]]:
     """Writes the program in ``path`` to ``output`` with the changes, and nothing else changed.
 
     changes: a CSV file (``read_changes``) or a list of dicts with the same keys: ``index`` (as in
     the table of poses, from 0) or ``line`` (all motions of that line), ``speed_mm_s``, ``force_N``,
     ``dx_mm``, ``dy_mm``, ``dz_mm`` along the axes of the motion's base and ``tool_dz_mm`` along the
-    tool's z.
+    tool's z. ``force_device``: by whose statements the program sets its forces.
 
     Returns a list of dicts, one for each changed motion: index, line, and speed_mm_s, force_N,
     offset_mm as read back from what was written. Raises ProgramError, and writes nothing, where a
@@ -200,11 +205,12 @@ def patch(
     path, output = Path(path), Path(output)
     if isinstance(changes, (str, Path)):
         changes = read_changes(changes)
-    program = read_program(path)
+    program = read_program(path, force_device=force_device)
     module = _language(program.language, path.suffix.lower())
     data = path.read_bytes()
     source: Source = getattr(module, "source", Source)(data)
     work = _work(program, changes, source, module)
+    forces.edit(source, work, force_device)
     module.edit(source, work)
     try:
         written = source.result()
@@ -223,7 +229,9 @@ def patch(
         copy = Path(folder) / path.name
         values = values_beside(path)
         copy.write_bytes(written)
-        again = read_program(copy, values=values if os.path.isfile(values) else None)
+        again = read_program(
+            copy, values=values if os.path.isfile(values) else None, force_device=force_device
+        )
     report = _verify(program, again, work, source, module)
     _write(output, written, beside, path)
     return report

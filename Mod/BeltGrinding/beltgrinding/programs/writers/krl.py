@@ -9,18 +9,22 @@ from typing import TYPE_CHECKING
 from ...base.frames import to_abc
 from ...base.kinds import Floats, known
 from ..patch.text import decimal
+from ..force_device import KRL
 from ..program import ProgramError
 from .frames import check_all_set, taken_for_granted
-from .text import DEGREE_DIGITS, MM_DIGITS, SPEED_DIGITS, rounded
+from . import pressing, spline
+from .text import ZONE_DIGITS, Digits, rounded
 
 if TYPE_CHECKING:
     from .frames import Frame
     from .sheet import Sheet
 
-ZONE_DIGITS = 3  # of mm
 NAME = re.compile(r"[A-Za-z]\w{0,23}$", re.ASCII)
-POSE = ",".join([f"{k} %.{MM_DIGITS}f" for k in "XYZ"] + [f"{k} %.{DEGREE_DIGITS}f" for k in "ABC"])
-POSE = "{" + POSE + "}"
+# A Cartesian PTP without status and turn is reached in the posture that the robot happens to have.
+FIRST = [
+    "; The next PTP has no status and turn (S, T): they are not known here. Add them, or put a PTP with the",
+    "; joint angles of your cell's home position before it.",
+]
 VARIABLES = {"tool": "$TOOL", "base": "$BASE"}
 
 
@@ -45,13 +49,13 @@ def text(sheet: Sheet) -> bytes:
         check_all_set(frames, "KRL")
     left_out = [frame for frame in (sheet.bases[0], sheet.tools[0]) if frame.left_out]
     sheet.notes += taken_for_granted(left_out)
-    places = [_pose(frame) for frame in sheet.frames]
+    places = [_pose(frame, sheet.digits) for frame in sheet.frames]
     lines = ["&ACCESS RVP", "&REL 1"]
     lines += [f"&COMMENT {comment}" for comment in sheet.comments[:1]]
     lines.append(f"DEF {sheet.name} ( )")
     lines += [f"; {comment}" for comment in sheet.comments[1:]]
     for frame in left_out:
-        lines += _asked_for(frame)
+        lines += _asked_for(frame, sheet.digits)
     lines += [
         ";FOLD INI",
         "GLOBAL INTERRUPT DECL 3 WHEN $STOPMESS==TRUE DO IR_STOPM ( )",
@@ -61,21 +65,23 @@ def text(sheet: Sheet) -> bytes:
         ";ENDFOLD (INI)",
     ]
     blend = decimal(sheet.blend_mm, ZONE_DIGITS)
-    tool = base = speed = force = None
-    spline = False
+    pressed = pressing.before(sheet, KRL, ";")
+    begins = spline.blocks(sheet)
+    digits = sheet.digits.speed + 3  # of m/s
+    tool = base = speed = None
+    inside = rounded_before = False
     for k, step in enumerate(sheet.steps):
         head = []
+        if k == 0 and step.kind == "PTP":
+            head += FIRST
         if step.note:
             head.append(f"; {step.note}")
         if step.base != base:
             base = step.base
-            head += _setting(sheet.bases[base])
+            head += _setting(sheet.bases[base], sheet.digits)
         if step.tool != tool:
             tool = step.tool
-            head += _setting(sheet.tools[tool])
-        if step.force != force:
-            force = step.force
-            head.append("; force as set" if force is None else f"; force {force:g} N")
+            head += _setting(sheet.tools[tool], sheet.digits)
         last = k + 1 == len(sheet.steps)
         rounds = ""
         if step.kind in ("LIN", "CIRC") and not last:
@@ -84,39 +90,47 @@ def text(sheet: Sheet) -> bytes:
         if rounds not in ("", blend):
             blend = rounds
             head.append(f"$APO.CDIS={blend}")
-        wanted = speed if step.kind == "PTP" else step.speed or sheet.speed_mm_s
-        if spline and (step.kind != "SPL" or any(not row.startswith(";") for row in head)):
+        wanted = speed if step.kind == "PTP" else decimal(sheet.speed_of(step) / 1000.0, digits)
+        if inside and (
+            step.kind != "SPL" or k in begins or any(not row.startswith(";") for row in head)
+        ):
             lines.append("ENDSPLINE")
-            spline = False
+            inside = False
+        if pressed[k]:
+            plain = pressed[k].startswith(";") or not (inside or rounded_before)
+            head.append(pressed[k] if plain else known(sheet.device).triggered(pressed[k], inside))
         own = ""
-        if wanted is not None and wanted != speed and spline:
-            own = f" WITH $VEL.CP={decimal(wanted / 1000.0, SPEED_DIGITS + 3)}"
+        if wanted is not None and wanted != speed and inside:
+            own = f" WITH $VEL.CP={wanted}"
         elif wanted is not None and wanted != speed:
             speed = wanted
-            head.append(f"$VEL.CP={decimal(speed / 1000.0, SPEED_DIGITS + 3)}")
+            head.append(f"$VEL.CP={wanted}")
         lines += head
-        if step.kind == "SPL" and not spline:
+        if step.kind == "SPL" and not inside:
             lines.append("SPLINE")
-            spline = True
+            inside = True
+        rounded_before = bool(rounds)
         target = places[step.pose]
         if step.kind == "CIRC":
             target = f"{places[known(step.aux)]},{target}"
         lines.append(f"{step.kind} {target}{own}{' C_DIS' if rounds else ''}")
-    lines += ["ENDSPLINE"] if spline else []
+    lines += ["ENDSPLINE"] if inside else []
     lines += ["END", ""]
     return "\r\n".join(lines).encode("ascii")
 
 
-def _pose(frame: Floats) -> str:
-    place = rounded(frame[:3, 3], MM_DIGITS).tolist()
-    return POSE % (*place, *rounded(to_abc(frame), DEGREE_DIGITS).tolist())
+def _pose(frame: Floats, digits: Digits) -> str:
+    names = [f"{k} %.{digits.mm}f" for k in "XYZ"] + [f"{k} %.{digits.degree}f" for k in "ABC"]
+    place = rounded(frame[:3, 3], digits.mm).tolist()
+    turn = rounded(to_abc(frame), digits.degree).tolist()
+    return "{" + ",".join(names) % (*place, *turn) + "}"
 
 
-def _frame(frame: Floats) -> str:
-    return "{FRAME: " + _pose(frame)[1:]
+def _frame(frame: Floats, digits: Digits) -> str:
+    return "{FRAME: " + _pose(frame, digits)[1:]
 
 
-def _asked_for(frame: Frame) -> list[str]:
+def _asked_for(frame: Frame, digits: Digits) -> list[str]:
     """Comments: a frame that the program does not set."""
     variable = VARIABLES[frame.what]
     lines = [
@@ -124,17 +138,17 @@ def _asked_for(frame: Frame) -> list[str]:
         f"; keeps it. The poses mean: {frame.told}",
     ]
     if frame.pose is not None:
-        lines.append(f";   {variable}={_frame(known(frame.pose))}")
+        lines.append(f";   {variable}={_frame(known(frame.pose), digits)}")
     return lines
 
 
-def _setting(frame: Frame) -> list[str]:
+def _setting(frame: Frame, digits: Digits) -> list[str]:
     """Statements that set a frame; none where it is left out."""
     if frame.left_out:
         return []
     comment = f"; {frame.what} {frame.told}"
     if frame.given:
-        return [comment, f"{VARIABLES[frame.what]}={_frame(known(frame.pose))}"]
+        return [comment, f"{VARIABLES[frame.what]}={_frame(known(frame.pose), digits)}"]
     if not re.fullmatch(r"\d{1,3}", known(frame.name), re.ASCII):
         raise ProgramError(
             "programs.writers.krl_number",

@@ -4,9 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from typing import Optional
+
+import numpy as np
+
 from ...base.kinds import Floats
+from ..force_device import ForceDevice
 from ..program import Fact
 from .frames import Frame
+from .text import DIGITS, Digits
 
 
 @dataclass
@@ -40,4 +46,19 @@ class Sheet:
     ptp_speed_mm_s: float
     blend_mm: float
     part_in_hand: bool
+    digits: Digits = DIGITS["fine"]
+    form: str = (
+        ""  # "": corners as the motions say; "spline" or "zones": as ``write_program`` takes it
+    )
+    device: Optional[ForceDevice] = None  # that the program sets its forces by
     notes: list[Fact] = field(default_factory=list)  # what the program takes for granted
+
+    def ways(self) -> tuple[Floats, Floats]:
+        """(n,) mm from the step before, (n,) mm to the one behind; 0 where there is none."""
+        places = self.positions[[step.pose for step in self.steps]]
+        lengths = np.linalg.norm(np.diff(places, axis=0), axis=1)
+        return np.append(0.0, lengths), np.append(lengths, 0.0)
+
+    def speed_of(self, step: Step) -> float:
+        """mm/s of a path motion, never so low that its digits make it none."""
+        return max(step.speed or self.speed_mm_s, 10.0**-self.digits.speed)

@@ -17,12 +17,16 @@ import numpy as np
 
 from ...base.kinds import Floats, Json
 from .. import one_frame
+from ..force_device import Given as Device, device_of
 from ..problems import ordered
 from ..program import Motion, Program, ProgramError
 from . import one_base
 from .frames import Frames, checked
+from .pressing import not_set, settle
+from .read_again import check_forces
 from .sheet import Sheet, Step
-from .text import printable
+from .spline import FORMS, fit_zones
+from .text import DIGITS, printable
 from .turned import resolved
 
 if TYPE_CHECKING:
@@ -48,6 +52,9 @@ def write_program(
     ptp_speed_mm_s: float = 200.0,
     blend_mm: float = 1.0,
     part_in_hand: bool | None = None,
+    form: str = "",
+    digits: str = "fine",
+    force_device: Device = None,
 ) -> list[Fact]:
     """Writes a robot program to ``path``, whole or not at all. Raises ProgramError.
 
@@ -67,6 +74,13 @@ def write_program(
     blend_mm: how far from a pose whose motion gives no zone the robot may round the corner; 0: it stops.
     part_in_hand: the poses are those of a fixed tool in the part that the robot holds (RAPID's
     robhold); None: what the words of the program's frames tell.
+
+    form: how a controller follows the passes. "": corners as the motions say. "spline": KRL's passes are spline
+    blocks, in which a sharp bend stops the robot; in other languages as "zones": corners are rounded by half the
+    shorter neighbouring way at most.
+    digits: "fine": poses read back within 1e-6 mm and 1e-6 degrees; "robot": 0.001 mm, 0.001 degrees, 0.1 mm/s.
+    force_device: what sets the pressing force (``force_device.device_of``), for path motions; None: comments tell it.
+    What is written is read again then, and refused unless each motion has its force.
 
     A motion without a pose (a joint target, a gap) becomes a comment, and the next pose is reached
     by PTP: nothing is ground on a way that is not known.
@@ -115,12 +129,23 @@ def write_program(
     sheet.comments = [printable(text) for text in head]
     sheet.speed_mm_s, sheet.ptp_speed_mm_s = float(speed_mm_s), float(ptp_speed_mm_s)
     sheet.blend_mm, sheet.part_in_hand = float(blend_mm), bool(part_in_hand)
+    if form not in ("", *FORMS) or digits not in DIGITS:
+        raise ValueError(f"form {form!r}, digits {digits!r}")
+    sheet.form, sheet.digits = form, DIGITS[digits]
+    fit_zones(sheet)
+    if suffix != ".csv":
+        sheet.device = device_of(force_device)
+        pressed = [*settle(sheet), *not_set(sheet)]
+    else:
+        pressed = []
     data = writer(sheet)
+    if sheet.device is not None:
+        check_forces(sheet, data, path.stem + suffix)
     from ...base.files import write_whole
 
     path.parent.mkdir(parents=True, exist_ok=True)
     write_whole(path, data)
-    return [*sheet.notes, *turns, *joined, *given, *(fact for _, _, fact in left_out)]
+    return [*pressed, *sheet.notes, *turns, *joined, *given, *(fact for _, _, fact in left_out)]
 
 
 def _writer(suffix: str, path: Path) -> Callable[[Sheet], bytes]:

@@ -58,18 +58,15 @@ def _grind(arguments):
             "--program {name}: give a name, not a path; it is written into the output folder",
             name=arguments.program,
         )
+    _check_name(arguments.program, arguments.form)
     outcome.check(arguments)
     wanted = plans.validate(settings.given(arguments.settings, arguments.set))
     passes = settings.given(arguments.raster, arguments.set_raster, "--set-raster")
     raster_path.validate(passes)
 
-    table = rounds_table.Table()
+    told = None if arguments.quiet else rounds_table.Table().told
     out, program = arguments.output, Path(arguments.output, arguments.program)
     notes = []
-
-    def told(one):
-        if not arguments.quiet:
-            table.told(one)
 
     def write(found, entry=None):
         """Entries of the program's file in a job."""
@@ -155,6 +152,22 @@ def _faces(text):
         raise InputError(
             "cli.faces", "--faces {given}: write numbers from 1, as 3,4,9", given=text
         ) from None
+
+
+def _check_name(name, form):
+    """Refuses the name of a program that cannot be written, before anything is planned. Raises InputError."""
+    import tempfile
+
+    import numpy as np
+
+    from ..programs.writers.writer import _writer, write_program
+
+    _writer(Path(name).suffix.lower(), Path(name))
+    poses = np.stack([np.eye(4)] * 2)
+    poses[1, 0, 3] = 1.0
+    with tempfile.TemporaryDirectory() as folder:
+        passes = [{"poses": poses, "feed_mm_s": 1.0}]
+        write_program(Path(folder, name), None, passes, form=form)
 
 
 def _write_program(found, file, force, form):

@@ -37,14 +37,10 @@ def _plan(arguments):
     wanted = plans.validate(settings.given(arguments.settings, arguments.set))
     job = jobs.load(arguments.job)
     read = [arguments.job, *arguments.stock, *inputs.files(job)]
-    table = rounds_table.Table()
-
-    def told(one):
-        if not arguments.quiet:
-            table.told(one)
 
     def one_part(scan, folder, options):
         """(Plan, alignment or None) of a part with its own stock; written into the folder."""
+        told = None if arguments.quiet else rounds_table.Table().told
         apply.check(job, folder, read, arguments.force)
 
         def write(found, entry=None):

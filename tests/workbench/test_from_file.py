@@ -49,26 +49,34 @@ def writer(folder, suffix):
 
 
 def test_a_file_that_holds_all_is_what_was_planned(planned, tmp_path):
-    write, written = writer(tmp_path, ".csv")
-    rows = []
-    checked = from_file.check(planned, tmp_path, write, told=rows.append, before=False)
+    write, _ = writer(tmp_path, ".csv")
+    context = core.RunContext().part(0.0, 1.0)
+    read = from_file._read(planned, write(planned), tmp_path, False, context)
     # The same job and path, simulated here at half the spacing, step and contact cells.
     job = jobs.validate({**planned.job, "programs": [{"file": str(tmp_path / "path.csv")}]})
     alone = runs.run(convergence.scaled(timed(job), "fine"))
-    np.testing.assert_array_equal(checked.plan.after.field.height, alone.field.height)
-    told = alone.summary["in_tolerance_area_share"]
-    assert checked.entry["in_tolerance"] == told
-    share = planned.after.summary["in_tolerance_area_share"]
-    assert checked.entry["sampling"] == pytest.approx(told - share, abs=1e-12)
-    assert len(written) == len(rows) == 1 and checked.short == checked.notes == []
-    assert rows[0]["from_file"] is True
-    assert rows[0]["in_tolerance"] == alone.summary["in_tolerance_area_share"]
-    # One run has the result, its verdict, the figures and why the rest stays.
-    plan = checked.plan
-    assert plan.after.verdict["in_share"] == pytest.approx(checked.entry["in_tolerance"], abs=1e-9)
+    np.testing.assert_array_equal(read.result.field.height, alone.field.height)
+    told, share = (one.summary["in_tolerance_area_share"] for one in (alone, planned.after))
+    assert read.forces and read.figures["in_tolerance"] == told
+    # What half the spacing changes is the difference, for all else is the same.
+    assert read.sampling == pytest.approx(told - share, abs=1e-12)
+
+
+def test_one_run_has_the_result_its_verdict_the_figures_and_the_reasons(planned, tmp_path):
+    write, written = writer(tmp_path, ".csv")
+    rows = []
+    checked = from_file.check(planned, tmp_path, write, told=rows.append, before=False)
+    plan, told = checked.plan, checked.entry["in_tolerance"]
+    assert told == max(one["in_tolerance"] for one in rows if one.get("from_file"))
+    assert plan.after.summary["in_tolerance_area_share"] == told
+    assert plan.after.verdict["in_share"] == pytest.approx(told, abs=1e-9)
     assert len(plan.why["state"]) == plan.after.field.size
-    out = sum(plan.why["shares"].values())
-    assert out == pytest.approx(1.0 - checked.entry["in_tolerance"], abs=1e-6)
+    assert sum(plan.why["shares"].values()) == pytest.approx(1.0 - told, abs=1e-6)
+    # And what stands in the folder is that plan's.
+    job = jobs.validate({**planned.job, "programs": [{"file": str(tmp_path / "path.csv")}]})
+    (mine,), (its,) = from_file._arrays(plan.job), from_file._arrays(job)
+    for name in ("feeds", "forces", "zones"):
+        assert its[name] == pytest.approx(mine[name], abs=1e-6)
 
 
 def test_forces_that_the_file_does_not_set_are_told_and_planned_without(planned, tmp_path):

@@ -22,7 +22,7 @@ def test_a_job_under_its_controllers_time():
     assert job["simulation"]["timing"] == "constant_feed"  # the job given stays
     assert simulation["timing"] == "trapezoidal"
     assert simulation["path_acceleration_mm_s2"] == 2300.0  # $ACC.CP 2.3 m/s2
-    assert simulation["angular_acceleration_deg_s2"] == 150.0
+    assert simulation["angular_acceleration_deg_s2"] == 200.0
     assert simulation["max_travel_mm"] == SIMULATION["max_travel_mm"]["default"]
     found = robot_time.limits(job)
     assert found.cycle_s == 0.012 and found.least_block_s == pytest.approx(0.036)
@@ -34,7 +34,7 @@ def test_what_the_job_gives_itself_stays():
     job = job_of(robot={"controller": "ur_e"}, simulation=own)
     simulation = robot_time.timed(job)["simulation"]
     assert simulation["path_acceleration_mm_s2"] == 900.0 and simulation["default_zone_mm"] == 0.0
-    assert simulation["rotation_speed_deg_s"] == 120.0
+    assert simulation["rotation_speed_deg_s"] == 180.0
     again = robot_time.timed(robot_time.timed(job))
     assert again == robot_time.timed(job)
     assert robot_time.limits(job) == robot_time.limits(again)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from ..base import records, schemas
-from ..base.kinds import Json
+import numpy as np
+
+from ..base import frames, records, schemas
+from ..base.kinds import Array, Floats, Json
 from ..presets import library
 from .settings import Job
 from .typed import typed
@@ -20,6 +23,10 @@ KEYS = {
     "rotation_speed_deg_s": "rotation_speed",
     "default_zone_mm": "default_zone",
 }
+PLACE_DIGITS, ANGLE_DIGITS = 3, 3  # of mm and degrees, in programs
+FEED_DIGITS = 1  # of mm/s
+STRAIGHT = 0.9  # cosine between the ways to a pose and from it: no corner
+BARELY = 1e-9  # relative: a feed of so much less than a tenth more is that tenth
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,3 +77,37 @@ def timed(job: Job | Json) -> dict[str, Any]:
     data: dict[str, Any] = dict(records.plain(job))
     law = {key: getattr(found, key) for key in KEYS}
     return {**data, "simulation": {**data["simulation"], "timing": "trapezoidal", **law}}
+
+
+def laid_out(arrays: Mapping[str, Array], found: Limits) -> dict[str, Array]:
+    """Arrays of a program (as ``poses.program_arrays``) with the digits that its file will have, and each pose's zone told:
+    no more than half of the shorter way beside it."""
+    placed = np.array(arrays["frames"], dtype=float)
+    for k, frame in enumerate(placed):
+        placed[k] = frames.from_abc(
+            np.round(frame[:3, 3], PLACE_DIGITS), np.round(frames.to_abc(frame), ANGLE_DIGITS)
+        )
+    return {**arrays, "frames": placed, "zones": _zones(arrays, placed, found)}
+
+
+def rounded_feeds(feeds: Floats) -> Array:
+    """Feeds (n,) mm/s to the tenth below, as programs have them; those below a tenth stay."""
+    scale = 10.0**FEED_DIGITS
+    return np.where(feeds * scale < 1.0, feeds, np.floor(feeds * scale * (1.0 + BARELY)) / scale)
+
+
+def _zones(arrays: Mapping[str, Array], placed: Floats, found: Limits) -> Floats:
+    """(n,) mm: a pose of unknown zone has half of the shorter way beside it where the path goes on nearly straight, the
+    default at corners, and 0 beside a rapid motion, as the time law takes it."""
+    steps = np.diff(placed[:, :3, 3], axis=0)
+    way = np.linalg.norm(steps, axis=1)
+    half = 0.5 * np.minimum(np.append(np.inf, way), np.append(way, np.inf))
+    on = np.full(len(placed), False)
+    on[1:-1] = (steps[1:] * steps[:-1]).sum(axis=1) > STRAIGHT * way[1:] * way[:-1]
+    rapid = np.append(arrays["rapid"], True)
+    unknown = np.where(on & np.isfinite(half), half, found.default_zone_mm)
+    unknown = np.where(rapid[:-1] | rapid[1:], 0.0, unknown)
+    zones = np.where(arrays["zones"] < 0.0, unknown, arrays["zones"])
+    within = np.where(half > 0.0, np.minimum(zones, half), zones)
+    scale = 10.0**PLACE_DIGITS
+    return np.floor(within * scale + BARELY) / scale

@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 SHORT = 0.005  # of the area, less than planned: told, and planned on
 SAMPLING = 0.01  # of the area, by which half the spacing may change the share
 PLACES = 3  # that are told where a file falls short
-# What a file may round: mm, of a rotation's matrix, mm/s, N.
-PLACE_MM, TURN, FEED_MM_S, FORCE_N = 2e-3, 1e-4, 0.1, 0.1
+# What a file may round: mm, of a rotation's matrix, mm/s, N, mm.
+PLACE_MM, TURN, FEED_MM_S, FORCE_N, ZONE_MM = 2e-3, 1e-4, 0.1, 0.1, 2e-3
 REACHED = 0.95  # of its feed, on a motion: less is not reached
 ROUNDS = 3  # of the planning that goes on
 
@@ -135,7 +135,7 @@ def check(
 
 def _own_time(plan: Plan) -> bool:
     """Whether a plan is for the job's own time law, as for study."""
-    return bool(plan.settings.get("timing") == "job")
+    return bool(plan.settings["timing"] == "job")
 
 
 def _tell(told: Callable[[Json], object] | None, read: _Read) -> None:
@@ -164,6 +164,7 @@ def _read(
         forces
         and plan.after.job["simulation"]["timing"] == data["simulation"]["timing"]
         and _same(mine, its, "feeds", FEED_MM_S)
+        and _same(mine, its, "zones", ZONE_MM)
         and _in_place(mine, its)
     ):
         sampling = told["in_tolerance"] - planned["in_tolerance"]
@@ -193,19 +194,17 @@ def _goes_on(
     plan = best.plan
     job = plan.commands.job
     settings: dict[str, Any] = {**plan.settings, "check": False, "rounds": ROUNDS}
-    start: tuple[Floats, Floats] | None = plan.new, plan.factors
+    factors = plan.factors
     if missing:
         listed = [{"poses": poses.list_poses(one)} for one in _arrays(best.data)]
         kept = [{k: v for k, v in one.items() if k == "name"} for one in job["programs"]]
         job = {**job, "programs": [{**a, **b} for a, b in zip(kept, listed)]}
         settings.update(force_min_N=0.0, force_max_N=0.0)
-        if len(listed[0]["poses"]) != len(plan.commands.group):  # poses are left out
-            start = None
-        else:
-            start = plan.new, np.ones(len(plan.new))
+        factors = np.ones(len(factors))
     if coarse:
         job = at_half(job, context)
-    return job, settings, start
+    same = len(Commands(job, settings)) == len(plan.new)  # not where poses are left out
+    return job, settings, (plan.new, factors) if same else None
 
 
 def _planned_on(first: _Read, second: _Read, missing: bool, coarse: bool, better: bool) -> Fact:

@@ -33,7 +33,9 @@ if TYPE_CHECKING:
     from ..program import Fact
     from .frames import Given
 
-WRITTEN_BY = "written by BeltGrinding"  # in the head: such a file may be written anew (cli/outputs.py)
+WRITTEN_BY = (
+    "written by BeltGrinding"  # in the head: such a file may be written anew (cli/outputs.py)
+)
 IN_HAND = ("held by the robot", "fixed in the room")  # as the RAPID reader says it
 
 Written: TypeAlias = "Program | Iterable[Motion] | Iterable[Json]"  # Json: passes

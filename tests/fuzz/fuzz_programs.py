@@ -39,7 +39,9 @@ from beltgrinding.programs.program import ProgramError  # noqa: E402
 from beltgrinding.programs.table import poses_csv, summary  # noqa: E402
 from program_mutations import cut, damaged, excerpt  # noqa: E402
 
-LIMIT = 5.0  # s of processor time for one file: endless ones take 1 s, twice as long beside other work
+LIMIT = (
+    5.0  # s of processor time for one file: endless ones take 1 s, twice as long beside other work
+)
 PATH_LIMIT = 10.0  # s for the path of what was read, arcs as chords
 SILENCE = 60.0  # s without a sign of life after which a worker is lost
 MEMORY = 4 << 30  # bytes

@@ -81,7 +81,7 @@ def test_statements_of_other_hands(given, language, statement, newton):
     assert found == (None if newton is None else pytest.approx(newton, abs=1e-3))
 
 
-@pytest.mark.parametrize("suffix", [".src", ".mod", ".script"])
+@pytest.mark.parametrize("suffix", [".src", ".mod", ".script", ".ls", ".jbi"])
 @pytest.mark.parametrize("given", [ANALOG, CALL, TEMPLATE])
 @pytest.mark.parametrize("form", ["", "spline", "zones"])
 @pytest.mark.parametrize("digits", ["fine", "robot"])

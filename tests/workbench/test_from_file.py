@@ -229,3 +229,30 @@ def test_a_coarse_sampling_is_told_and_planned_on_at_half(tmp_path):
     assert checked.entry["in_tolerance"] == max(one["in_tolerance"] for one in read)
     if abs(checked.entry["sampling"]) > from_file.SAMPLING:
         assert f"+-{100 * abs(checked.entry['sampling']):.1f} points" in str(checked.notes[-1])
+
+
+@pytest.mark.parametrize(
+    "program, device",
+    [
+        ("path.src", {"kind": "call", "name": "PRESS", "resolution_N": 0.1}),
+        ("path.mod", {"kind": "analog", "name": "aoForce", "scale_per_N": 0.1}),
+    ],
+)
+def test_with_a_force_device_the_file_presses_as_planned(
+    tmp_path, capsys, monkeypatch, program, device
+):
+    monkeypatch.setattr(grinding, "TRIES", 1)
+    job = job_of(force_device=device)
+    (tmp_path / "job.json").write_text(json.dumps(job))
+    out = tmp_path / "out"
+    begin = ["grind", str(tmp_path / "job.json"), "-o", str(out), "--program", program]
+    assert cli.main([*begin, "--set", "rounds=1"]) == 0, capsys.readouterr().err
+    capsys.readouterr()
+    data = json.loads((out / "plan.json").read_text())
+    planned = jobs.load(out / "job.json")
+    read = from_file.with_programs(planned, [{"file": program}], out)
+    (mine,), (its,) = from_file._arrays(planned), from_file._arrays(read)
+    grinds = ~mine["rapid"]
+    assert mine["forces"][grinds].min() < 15.0  # the plan is gentle somewhere
+    assert its["forces"][grinds] == pytest.approx(mine["forces"][grinds], abs=0.11)
+    assert not [one for one in data["from_file"]["notes"] if "force" in one]

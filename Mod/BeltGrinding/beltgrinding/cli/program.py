@@ -14,7 +14,7 @@ def add(commands):
         help="read a robot program, write changes back into it, or convert it",
         usage="beltgrind program FILE [-o POSES.csv] [--strict]\n"
         "       beltgrind program write ORIGINAL CHANGES.csv -o NEW\n"
-        "       beltgrind program convert FILE -o NEW.src|.mod|.script|.csv",
+        "       beltgrind program convert FILE -o NEW.src|.mod|.script|.ls|.jbi|.csv",
         description="Says what is in a robot program. write: changed speeds, forces and offsets "
         "go back into the original, nothing else changes. convert: writes it in another language.",
     )
@@ -59,7 +59,7 @@ def add(commands):
     raster = commands.add_parser("raster", help="lay passes on the job's faces (docs/raster.md)")
     raster.add_argument("job", help="job.json; it need not have a program yet")
     raster.add_argument(
-        "-o", "--output", required=True, help="program: .csv, .src, .mod or .script"
+        "-o", "--output", required=True, help="program: .csv, .src, .mod, .script, .ls or .jbi"
     )
     raster.add_argument("--settings", help="JSON file of the settings")
     raster.add_argument(

@@ -21,6 +21,7 @@ from ..job.poses import program_name
 from ..job.robot_time import timed
 from ..job.typed import typed
 from ..presets import robot as robots
+from ..programs.force_device import of_job
 from ..simulation import convergence, run as runs
 from . import reasons, rounds
 from .commands import Commands
@@ -247,7 +248,9 @@ def _arrays(data: Json) -> list[dict[str, Array]]:
     found = []
     for k, program in enumerate(job.programs):
         pose_of = robots.pose_function(data["robot"])
-        one = poses.program_arrays(program, program_name(job, k), [], pose_of, job.cell.holding)
+        one = poses.program_arrays(
+            program, program_name(job, k), [], pose_of, job.cell.holding, of_job(job)
+        )
         force = float(job.belt_machine.force_N)
         found.append({**one, "forces": np.where(one["forces"] < 0.0, force, one["forces"])})
     return found

@@ -10,11 +10,10 @@ from __future__ import annotations
 import contextlib
 import json
 import math
-import operator
 import re
 import string
 import threading
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, is_dataclass
 from pathlib import Path
 from typing import Any, Optional, Union
@@ -304,8 +303,8 @@ def device_of(given: Given, **more: Any) -> ForceDevice | None:
 
 def of_job(job: Any) -> ForceDevice | None:
     """The ForceDevice of a validated job (Json or a record), which knows its cell; None where it has none. Raises InputError."""
-    read: Callable[[Any, str], Any] = getattr if is_dataclass(job) else operator.getitem
-    machine, cell = (records.plain(read(job, key)) for key in ("belt_machine", "cell"))
+    whole = vars(job) if is_dataclass(job) else job
+    machine, cell = (records.plain(whole[key]) for key in ("belt_machine", "cell"))
     if machine.get("force_device", {}).get("kind", "none") == "none":
         return None
     held = cell["holding"] == "part_in_hand"

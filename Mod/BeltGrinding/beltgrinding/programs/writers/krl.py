@@ -37,14 +37,7 @@ def text(sheet: Sheet) -> bytes:
             "digits or _; the file must be called as the module",
             name=sheet.name,
         )
-    if sheet.part_in_hand:
-        raise ProgramError(
-            "programs.writers.part_in_hand",
-            "poses of a fixed tool in a held part (robhold) are not written as "
-            "{language}: the path speed would be another one; write RAPID, or the "
-            "poses of the part in the room",
-            language="KRL",
-        )
+    sheet.refuse_held("KRL")
     for frames in (sheet.bases, sheet.tools):
         check_all_set(frames, "KRL")
     left_out = [frame for frame in (sheet.bases[0], sheet.tools[0]) if frame.left_out]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import textwrap
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,6 +33,11 @@ FLAWS = re.compile(r"[^\x20-\x7e]")
 def printable(text: object) -> str:
     """ASCII in one line."""
     return FLAWS.sub("?", " ".join(str(text).split()))[:200]
+
+
+def remarks(text: str, most: int) -> list[str]:
+    """A comment in lines of at most ``most`` characters."""
+    return textwrap.wrap(text, most)
 
 
 def identifier(name: str, most: int) -> str:

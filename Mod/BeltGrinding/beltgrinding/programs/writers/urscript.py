@@ -28,14 +28,7 @@ MOST = 64  # characters of a name
 
 def text(sheet: Sheet) -> bytes:
     """The bytes of a .script file. The poses are in one base (``one_base``)."""
-    if sheet.part_in_hand:
-        raise ProgramError(
-            "programs.writers.part_in_hand",
-            "poses of a fixed tool in a held part (robhold) are not written as "
-            "{language}: the path speed would be another one; write RAPID, or the "
-            "poses of the part in the room",
-            language="URScript",
-        )
+    sheet.refuse_held("URScript")
     check_all_set(sheet.tools, "URScript")
     for one in (*sheet.bases, *sheet.tools):
         _check_numbers(one)

@@ -1,4 +1,4 @@
-"""Writes new programs: KUKA KRL, ABB RAPID, URScript, CSV. The inverse of the readers.
+"""Writes new programs: KUKA KRL, ABB RAPID, URScript, Fanuc TP, Yaskawa INFORM, CSV. The inverse of the readers.
 
 Numbers have so many decimals that reading gives the poses within 1e-6 mm and 1e-6 degrees: 6 of mm
 and 7 of degrees in KRL, 9 of a quaternion, of metres and of radians. The controllers read them all;
@@ -60,7 +60,7 @@ def write_program(
 ) -> list[Fact]:
     """Writes a robot program to ``path``, whole or not at all. Raises ProgramError.
 
-    language: .src, .mod, .script, .csv or None, the suffix of ``path``.
+    language: .src, .mod, .script, .ls, .jbi, .csv or None, the suffix of ``path``.
     program: a Program; a list of Motion; or a list of passes, dicts of ``poses`` ((n, 4, 4),
     base_from_tcp in mm), ``feed_mm_s`` and, optionally, ``force_N``: the first pose of a pass is
     reached by PTP, the others by LIN.
@@ -158,12 +158,16 @@ def _writer(suffix: str, path: Path) -> Callable[[Sheet], bytes]:
         from .rapid import text
     elif suffix == ".script":
         from .urscript import text
+    elif suffix == ".ls":
+        from .fanuc import text
+    elif suffix == ".jbi":
+        from .inform import text
     elif suffix == ".csv":
         from .csv import text
     else:
         raise ProgramError(
             "programs.writers.suffix",
-            "{file}: no program is written as '{suffix}'; known: .src, .mod, .script, .csv",
+            "{file}: no program is written as '{suffix}'; known: .src, .mod, .script, .ls, .jbi, .csv",
             file=str(path),
             suffix=suffix,
         )

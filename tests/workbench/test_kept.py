@@ -236,6 +236,7 @@ VALUES = {
     "cell.bodies.0.name": lambda _: "pillar",
     "cell.bodies.0.file": lambda folder: str(folder / "other.brep"),
     "cell.bodies.0.brep": lambda _: OwnBrep(box(4.0, 4.0)[0]),
+    "robot.controller": lambda _: "krc4",
     "robot.preset": lambda _: "kuka_kr16_2",
     "robot.start_joints_deg": lambda _: [0.0, -80.0, 90.0, 0.0, 40.0, 0.0],
     "robot.link_radii_mm": lambda _: [90.0] * 7,

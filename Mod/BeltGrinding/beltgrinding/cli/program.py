@@ -274,6 +274,7 @@ def _program(arguments):
                 arguments.messages.print_notes([note])
             return
         elif action == "read" and arguments.output and read:
+            Path(arguments.output).parent.mkdir(parents=True, exist_ok=True)
             write_whole(Path(arguments.output), table.poses_csv(program).encode())
     except OSError as error:
         raise cannot_be_written(arguments.output, error) from None

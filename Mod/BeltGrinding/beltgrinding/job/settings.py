@@ -370,6 +370,7 @@ class RobotModel:
 class Robot:
     """``robot`` of a job."""
 
+    controller: str
     preset: str
     model: RobotModel
     base_from_robot: Frame | None = None

@@ -107,6 +107,7 @@ KEYS = (
     Key("Clearance", "Length", "Bodies", "cell.clearance_mm"),
     Key("WheelInset", "Length", "Bodies", "cell.wheel_inset_mm"),
     Key("Robot", "String", "Robot", "robot.preset"),
+    Key("Controller", "String", "Robot", "robot.controller"),
     Key("RobotModel", "JSON", "Robot", "robot.model"),
     Key("StartJoints", "JSON", "Robot", "robot.start_joints_deg"),
     Key("LinkRadii", "JSON", "Robot", "robot.link_radii_mm"),

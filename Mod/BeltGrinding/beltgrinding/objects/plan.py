@@ -182,6 +182,7 @@ class Work:
             plan = plans.plan(data, self.settings, context, told, self.sources)
             return Found(plan, self.planned, words=words)
         ground = grinding.grind(data, self.raster, self.settings, context, told)
+        ground = ground._replace(plan=plans.against(ground.plan, data, context))
         return Found(ground.plan, self.planned, ground, words)
 
 

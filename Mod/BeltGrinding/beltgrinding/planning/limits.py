@@ -16,6 +16,7 @@ import numpy as np
 
 from ..base.kinds import Array, Floats, Json, known
 from ..engine import InputError
+from ..job.robot_time import rounded_feeds
 from ..job.settings import Job
 from ..job.typed import typed
 from ..programs.force_device import of_job
@@ -85,7 +86,11 @@ def feeds(commands: Commands, wanted: Floats, weight: Floats, settings: Json) ->
     """
     per_mm, acceleration = settings["feed_change_mm_s_mm"], settings["acceleration_mm_s2"]
     if not per_mm and not acceleration:
-        return wanted
+        return (
+            wanted
+            if commands.limits is None
+            else np.where(commands.kept, wanted, rounded_feeds(wanted))
+        )
     first, second, way = commands.neighbours()
 
     def step(values: Floats) -> Floats | float:
@@ -110,11 +115,16 @@ def feeds(commands: Commands, wanted: Floats, weight: Floats, settings: Json) ->
 
     near = _nearest(wanted, weight, commands.kept, first, second, step)
     # What nothing is planned for, as positioning, may be outside of the limits as it is.
-    near = np.clip(
-        near,
-        np.minimum(settings["feed_min_mm_s"], wanted),
-        np.maximum(settings["feed_max_mm_s"], wanted),
-    )
+    least, greatest = commands.feed_range
+    near = np.clip(near, np.minimum(least, wanted), np.maximum(greatest, wanted))
+    if commands.limits is not None:
+        return _exact(
+            commands,
+            np.where(commands.kept, wanted, rounded_feeds(near)),
+            (first, second, way),
+            lambda value, d: float(rounded_feeds(np.array([up(value, d)]))[0]),
+            down,
+        )
     return _exact(commands, np.where(commands.kept, wanted, near), (first, second, way), up, down)
 
 

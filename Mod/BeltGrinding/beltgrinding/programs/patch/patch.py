@@ -38,6 +38,7 @@ COLUMNS = ("speed_mm_s", "force_N", "dx_mm", "dy_mm", "dz_mm", "tool_dz_mm")
 MAX_STEP = 1000.0  # mm; a larger offset is a mistake
 MAX_SPEED = 10_000.0  # mm/s
 MAX_FORCE = 10_000.0  # N
+ROUNDING_N = 1e-6  # of a force that is written
 UNCHANGED = 1e-9  # mm and of a rotation's matrix; numbers that were not edited read the same
 
 Named: TypeAlias = "Mapping[int, Mapping[str, float]]"  # of motions, what is to be changed
@@ -274,6 +275,7 @@ def _write(output: Path, written: bytes, beside: Path | None, path: Path) -> Non
 
 def _write_whole(path: Path, data: bytes) -> None:
     try:
+        path.parent.mkdir(parents=True, exist_ok=True)
         write_whole(path, data)
     except OSError as error:
         raise ProgramError.of(cannot_be_written(shown(path), error)) from None
@@ -487,7 +489,8 @@ def _verify(
         speed = a.speed_mm_s if speed is None else speed
         rounding = module.rounding_mm_s(source, a.line) if a.line in work.speeds else 0.0
         _close(i, a, "speed", speed, b.speed_mm_s, rounding, work)
-        _close(i, a, "force", a.force_N if force is None else force, b.force_N, 0.0, work)
+        rounding = ROUNDING_N if a.line in work.forces else 0.0
+        _close(i, a, "force", a.force_N if force is None else force, b.force_N, rounding, work)
         if (a.pose is None) != (b.pose is None):
             raise _other(i, a, ITS["pose"])
         shifted = bool(step.any())

@@ -33,6 +33,9 @@ if TYPE_CHECKING:
     from ..program import Fact
     from .frames import Given
 
+WRITTEN_BY = (
+    "written by BeltGrinding"  # in the head: such a file may be written anew (cli/outputs.py)
+)
 IN_HAND = ("held by the robot", "fixed in the room")  # as the RAPID reader says it
 
 Written: TypeAlias = "Program | Iterable[Motion] | Iterable[Json]"  # Json: passes
@@ -122,6 +125,7 @@ def write_program(
     if isinstance(program, Program):
         head.append(f"from {program.file} ({program.language})")
         head += [f"not followed there: {problem}" for problem in ordered(program.problems)[:20]]
+    head.insert(1, WRITTEN_BY)  # the first may be the title
     head += [str(fact) for _, _, fact in left_out]
     head += one_base.comments(joined)
     sheet.comments = [printable(text) for text in head]
@@ -139,6 +143,7 @@ def write_program(
         check_forces(sheet, data, path.stem + suffix)
     from ...base.files import write_whole
 
+    path.parent.mkdir(parents=True, exist_ok=True)
     write_whole(path, data)
     return [*pressed, *sheet.notes, *turns, *joined, *given, *(fact for _, _, fact in left_out)]
 

@@ -654,3 +654,11 @@ def test_where_a_modal_speed_is_set():
     assert plan(path, {2: 5.0}, {2: 9}.get, refuse) == [("before", 2, 5.0), ("after", 2, 9)]
     barrier = [*path[:3], (4, "barrier"), (5, "path")]
     assert plan(barrier, {2: 5.0}, {2: 9}.get, refuse) == [("before", 2, 5.0), ("after", 2, 9)]
+
+
+def test_a_force_of_a_table_is_rounded_as_it_is_written(tmp_path):
+    """6 decimals of a small force are no other force."""
+    name = write(tmp_path, "p.csv", "x_mm,y_mm,z_mm,qw,qx,qy,qz,force_N\n0,0,0,1,0,0,0,5\n")
+    told = patch(name, [{"index": 0, "force_N": 0.4948532}], tmp_path / "new.csv")
+    assert told[0]["force_N"] == 0.494853
+    assert (tmp_path / "new.csv").read_text().endswith(",0.494853\n")

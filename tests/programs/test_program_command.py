@@ -220,3 +220,27 @@ def test_an_error_of_a_run_says_a_problem_once(tmp_path):
     given = {"file": tmp_path / "p.apt", "values": {"units": "inch"}}
     frames = program_arrays(given, "programs[0]", warnings)["frames"]
     assert frames[1, 0, 3] == pytest.approx(50.8)
+
+
+@pytest.mark.parametrize("suffix", [".src", ".mod", ".script", ".csv"])
+def test_an_own_program_is_written_anew_and_a_foreign_one_refused(program, tmp_path, suffix):
+    new = tmp_path / "new" / f"again{suffix}"  # the folder is made
+    (tmp_path / "path.csv").write_text("x_mm,y_mm,z_mm,qw,qx,qy,qz\n0,0,0,1,0,0,0\n9,0,0,1,0,0,0\n")
+    convert = ["program", "convert", str(tmp_path / "path.csv"), "-o", str(new)]
+    assert main(convert) == 0
+    first = new.read_bytes()
+    assert main(convert) == 0 and new.read_bytes() == first
+    new.write_bytes(first.replace(b"written by BeltGrinding", b"taught by hand"))
+    foreign = new.read_bytes()
+    assert main(convert) == 2 and new.read_bytes() == foreign
+    assert main([*convert, "--force"]) == 0 and new.read_bytes() == first
+
+
+def test_changes_are_written_into_a_new_folder(tmp_path):
+    (tmp_path / "p.csv").write_text("x_mm,y_mm,z_mm,qw,qx,qy,qz,feed_mm_s\n0,0,0,1,0,0,0,5\n")
+    (tmp_path / "changes.csv").write_text("index,speed_mm_s\n0,7\n")
+    new = tmp_path / "deep" / "new" / "p.csv"
+    begin = ["program", "write", str(tmp_path / "p.csv"), str(tmp_path / "changes.csv")]
+    assert main([*begin, "-o", str(new)]) == 0 and ",7\n" in new.read_text()
+    (tmp_path / "file").write_text("")
+    assert main([*begin, "-o", str(tmp_path / "file" / "p.csv")]) == 2

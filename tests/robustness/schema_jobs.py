@@ -240,6 +240,9 @@ class _Maker:
     def robot_preset(self):
         return self.dice.choice(_robots())
 
+    def robot_controller(self):
+        return self.dice.choice(("", *(one["id"] for one in library.controllers())))
+
     def robot_model(self):
         return {}
 

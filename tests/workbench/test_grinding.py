@@ -74,7 +74,7 @@ def test_a_part_alone_becomes_a_program(tmp_path, capsys):
     begin = ["grind", str(tmp_path / "plate.brep"), "-o", str(out), "--stock", "0.2", *options]
     assert cli.main(begin) == 0
     printed = capsys.readouterr().out
-    assert "passes " in printed and "planned: " in printed
+    assert "passes  apart mm" in printed and "planned: " in printed
     names = {path.name for path in out.iterdir()}
     assert names == {"plate.csv", "job.json", "feeds.csv", "plan.json", "plan.png", "result"}
     plan = json.loads((out / "plan.json").read_text())
@@ -101,6 +101,9 @@ def test_a_part_alone_becomes_a_program(tmp_path, capsys):
         (["--faces", "one"], "write numbers from 1"),
         (["--faces", "99"], "no face 99"),
         (["--program", "a/b.src"], "give a name"),
+        (["--program", "a.xyz"], "a.xyz: no program is written as '.xyz'"),
+        (["--program", "my-part.src"], "'my-part' is no name of a KRL module"),
+        (["--wanted", "0"], "--wanted 0: give a share"),
         (["--set", "rounds=0"], "rounds"),
         (["--set-raster", "along=west"], "along"),
         (["--tolerance", "0.1", "0.0"], "tolerance"),

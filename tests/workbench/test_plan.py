@@ -21,7 +21,7 @@ from beltgrinding.programs.writers.writer import write_program
 from beltgrinding.simulation import result as results, run as runs
 from test_job import ROOT, plate
 
-SETTINGS = {"check": False, "rounds": 4}
+SETTINGS = {"check": False, "rounds": 4, "timing": "job"}
 
 
 def wavy(path):

@@ -123,11 +123,16 @@ def test_the_picture_shows_passes_and_what_is_left_out(parts, tmp_path, capsys):
     share = magenta.sum() / (magenta.sum() + floor_like.sum())
     assert 0.5 * told["left_out"] < share < 2.0 * told["left_out"] and told["left_out"] > 0.01
     assert (pixels == np.array(drawing.PASS)).all(axis=2).sum() > 500
+    then = ["--then", str(tmp_path / "job.json"), str(tmp_path / "b.src")]
+    assert cli.main([*command, *then, *along]) == 2 and not (tmp_path / "b.src").exists()
     before = program.read_bytes()
-    for more in (["--then", str(tmp_path / "job.json"), str(tmp_path / "b.src")], []):
-        assert cli.main([*command, *more, *along]) == 2  # one wheel only; files are there already
-        assert program.read_bytes() == before and not (tmp_path / "b.src").exists()
-    capsys.readouterr()
+    assert cli.main([*command, *along]) == 0 and program.read_bytes() == before  # its own files
+    for own, foreign in ((program, b"DEF path( )\nEND\n"), (file, b"\x89PNG of another")):
+        kept = own.read_bytes()
+        own.write_bytes(foreign)
+        assert cli.main([*command, *along]) == 2 and own.read_bytes() == foreign
+        assert "this program has not written it" in capsys.readouterr().err
+        own.write_bytes(kept)
 
 
 @pytest.mark.slow

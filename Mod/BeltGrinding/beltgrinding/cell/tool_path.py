@@ -14,6 +14,7 @@ from ..job.settings import Job
 from ..job.typed import typed
 from ..job.workpiece import frame_of
 from ..presets import robot as robots
+from ..programs.force_device import of_job
 
 _made_from: weakref.WeakKeyDictionary[
     core.ToolPath, dict[str, Any]
@@ -38,6 +39,7 @@ def tool_path(
         warnings,
         robots.pose_function(records.plain(job.robot)),
         job.cell.holding,
+        of_job(job),
     )
     left_out = arrays.pop("gaps")
     if gaps is not None:

@@ -1,6 +1,7 @@
 """The command line: ``python3 -m beltgrinding run job.json -o out/``.
 
-Exit status: 0 success, 2 wrong input (one line on standard error), 130 interrupted. How scripts read the
+Exit status: 0 success, 1 a part or a program that fails where that is asked for, 2 wrong input (one line on standard
+error), 130 interrupted. How scripts read the
 errors: docs/job-file.md.
 """
 
@@ -29,6 +30,7 @@ from . import (
     report,
     sort,
     study,
+    verify,
     view,
 )
 from .messages import LANGUAGES, Messages
@@ -40,6 +42,7 @@ TOPICS = (
     from_faces,
     plan,
     belt_plan,
+    verify,
     press,
     program,
     faces,

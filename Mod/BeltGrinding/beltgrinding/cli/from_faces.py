@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
-from . import background, outputs, plan, settings
+from . import background, outcome, outputs, plan, rounds_table, settings
 from .messages import print_text
+from .program import add_form
 
 PROGRAM = "raster.src"
 
@@ -39,14 +40,16 @@ def add(commands):
         metavar="NAME",
         help=f"the program's file in the folder; its suffix says the language ({PROGRAM})",
     )
+    add_form(grind)
     grind.add_argument("-q", "--quiet", action="store_true", help="no progress, no summary")
+    outcome.add(grind)
     outputs.add(grind)
     grind.set_defaults(do=_grind)
 
 
 def _grind(arguments):
     from ..engine import InputError
-    from ..planning import apply, grinding, rounds as plans
+    from ..planning import apply, from_file, grinding, rounds as plans
     from ..raster import raster_path
 
     if Path(arguments.program).name != arguments.program:
@@ -55,27 +58,43 @@ def _grind(arguments):
             "--program {name}: give a name, not a path; it is written into the output folder",
             name=arguments.program,
         )
+    _check_name(arguments.program, arguments.form)
+    outcome.check(arguments)
     wanted = plans.validate(settings.given(arguments.settings, arguments.set))
     passes = settings.given(arguments.raster, arguments.set_raster, "--set-raster")
     raster_path.validate(passes)
 
-    def told(one):
-        if not arguments.quiet:
-            print_text(_line(one) if "change" in one else plan.line(one))
+    told = None if arguments.quiet else rounds_table.Table().told
+    out, program = arguments.output, Path(arguments.output, arguments.program)
+    notes = []
+
+    def write(found, entry=None):
+        """Entries of the program's file in a job."""
+        apply.write(found, out, [arguments.part], arguments.force, entry)
+        notes[:] = _write_program(found, program, arguments.force, arguments.form)
+        return [{"file": program.name}]
 
     def work(context):
         job, first = _job(arguments, context)
-        apply.check({**job, "programs": []}, arguments.output, [arguments.part], arguments.force)
-        return grinding.grind(job, {**first, **passes}, wanted, context, told)
+        apply.check({**job, "programs": []}, out, [arguments.part], arguments.force)
+        begun = context.part(0.0, plan.PLANNING if wanted["check"] else 1.0)
+        searched = {**wanted, "check": False}
+        found = grinding.grind(job, {**first, **passes}, searched, begun, told)
+        if not wanted["check"]:
+            return found, None
+        rest = context.part(plan.PLANNING, 1.0)
+        return found, from_file.check(found.plan, out, write, rest, told, before=False)
 
-    found = background.run(work, arguments.quiet)
-    apply.write(found.plan, arguments.output, [arguments.part], arguments.force)
-    arguments.messages.print_warnings(found.laid["warnings"])
-    notes = _write_program(found.plan, Path(arguments.output, arguments.program), arguments.force)
-    arguments.messages.print_notes(notes)
+    ground, checked = background.run(work, arguments.quiet)
+    found = ground.plan if checked is None else checked.plan
+    write(found, None if checked is None else checked.entry)
+    arguments.messages.print_warnings(ground.laid["warnings"])
+    arguments.messages.print_written(notes)
+    plan.tell_checked(arguments, checked)
     if not arguments.quiet:
-        print_text(plan.text(plans.summary(found.plan)))
-        print_text(f"program, job and result in {arguments.output}")
+        print_text(plan.text(plans.summary(found), checked is not None, before=False))
+        print_text(f"program, job and result in {out}")
+    outcome.tell(arguments, found.after, wanted["wanted_share"])
 
 
 def _job(arguments, context):
@@ -135,15 +154,23 @@ def _faces(text):
         ) from None
 
 
-def _line(one):
-    better = "" if one["better"] else " (not better)"
-    return (
-        f"passes {one['step_over_mm']:.2f} mm apart, run-out {one['run_out_mm']:.2f} mm, {one['repeats']} times, "
-        f"{one['poses']} poses: {100 * one['in_tolerance']:.1f} % in tolerance{better}"
-    )
+def _check_name(name, form):
+    """Refuses the name of a program that cannot be written, before anything is planned. Raises InputError."""
+    import tempfile
+
+    import numpy as np
+
+    from ..programs.writers.writer import _writer, write_program
+
+    _writer(Path(name).suffix.lower(), Path(name))
+    poses = np.stack([np.eye(4)] * 2)
+    poses[1, 0, 3] = 1.0
+    with tempfile.TemporaryDirectory() as folder:
+        passes = [{"poses": poses, "feed_mm_s": 1.0}]
+        write_program(Path(folder, name), None, passes, form=form)
 
 
-def _write_program(found, file, force):
+def _write_program(found, file, force, form):
     import os
 
     from ..base.files import cannot_be_written
@@ -151,7 +178,7 @@ def _write_program(found, file, force):
     from ..job.poses import listed_poses
     from ..programs.writers.writer import write_program
     from ..raster import raster_path
-    from .program import _frame_words
+    from .program import _as_followed, _frame_words
 
     if os.path.lexists(file) and not force and not (file.parent / "plan.json").exists():
         raise InputError(
@@ -161,6 +188,7 @@ def _write_program(found, file, force):
         )
     laid = listed_poses(found.job["programs"][0]["poses"], "raster")
     try:
-        return write_program(file, None, raster_path.program(laid, **_frame_words(found.job)))
+        made = raster_path.program(laid, **_frame_words(found.job))
+        return write_program(file, None, made, **_as_followed(form, found.job))
     except OSError as error:
         raise cannot_be_written(file, error) from None

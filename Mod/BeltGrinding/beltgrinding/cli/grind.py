@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from . import background, outputs
+from . import background, outcome, outputs
 from .messages import print_text
 
 
@@ -13,6 +13,7 @@ def add(commands):
     run.add_argument("-o", "--output", required=True, help="folder for the results")
     run.add_argument("--belt", help="JSON file that carries the belt's use from job to job")
     run.add_argument("-q", "--quiet", action="store_true", help="no progress, no summary")
+    outcome.add(run)
     outputs.add(run)
     run.set_defaults(do=_run)
 
@@ -21,6 +22,7 @@ def _run(arguments):
     from ..job import inputs, law, load as jobs
     from ..simulation import result_folder, run as runs
 
+    outcome.check(arguments)
     given = jobs.load(arguments.job)
     used = [path for path in (arguments.job, arguments.belt) if path]
     files = inputs.files(given)
@@ -42,11 +44,12 @@ def _run(arguments):
     if arguments.belt:
         law.write_belt(arguments.belt, result.summary["belt"])
     if not arguments.quiet:
-        _report(result, arguments, len(said))
+        report(result, arguments, len(said))
+    outcome.tell(arguments, result)
 
 
-def _report(result, arguments, said):
-    """Prints what came out; ``said``: how many of its warnings have been printed."""
+def report(result, arguments, said):
+    """Prints what came out and, where there is a folder, where it is; ``said``: how many of its warnings have been printed."""
     from ..inspection import verdict
 
     summary = result.summary
@@ -54,13 +57,12 @@ def _report(result, arguments, said):
     deviation = summary["deviation_mm"]
     chosen = ", chosen" if summary["spacing_chosen"] else ""
     coarse = "coarse: " if summary["resolution"] == "coarse" else ""
+    where = f"; results in {arguments.output}" if arguments.output else ""
     print_text(
         f"{coarse}{summary['samples']} samples ({summary['spacing_mm']:.3g} mm apart{chosen}), "
         f"{summary['steps']} steps, "
         f"{summary['removed_volume_mm3']:.1f} mm3 removed; deviation "
         f"{deviation['min']:+.3f} to {deviation['max']:+.3f} mm, "
-        f"{100 * summary['in_tolerance_area_share']:.1f} % of the area in tolerance; "
-        f"results in {arguments.output}"
+        f"{100 * summary['in_tolerance_area_share']:.1f} % of the area in tolerance{where}"
     )
     print_text(verdict.text(result.verdict))
-    arguments.messages.print_events(result.events, result.job)

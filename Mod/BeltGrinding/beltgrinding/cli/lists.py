@@ -9,7 +9,16 @@ def add(commands):
     preset.add_argument(
         "kind",
         nargs="?",
-        choices=("machines", "wheels", "belts", "materials", "thermals", "robots", "actuators"),
+        choices=(
+            "machines",
+            "wheels",
+            "belts",
+            "materials",
+            "thermals",
+            "robots",
+            "actuators",
+            "controllers",
+        ),
     )
     preset.add_argument("--json", action="store_true", help="as JSON")
     preset.set_defaults(do=_presets)

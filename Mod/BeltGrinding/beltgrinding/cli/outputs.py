@@ -6,8 +6,7 @@ import zipfile
 from pathlib import Path
 
 HEAD = 4096  # bytes
-# How files begin that this program writes. What people keep under such names looks otherwise; robot
-# programs, which do not, are never among them.
+# How files begin that this program writes. What people keep under such names looks otherwise.
 BEGINNINGS = (
     b"index,motion,x_mm,y_mm,z_mm,qw,",  # program
     b"program,pose,line,j1_deg,",  # reach
@@ -19,6 +18,7 @@ BEGINNINGS = (
     b"belt-ground part",  # mesh, STL
 )
 MARKS = (
+    b"written by BeltGrinding",  # raster, program convert (programs/writers)
     b"\ncomment belt-ground part",  # mesh, PLY
     b"<title>Belt grinding:",  # report, view
     b"<title>Bandschleifen:",

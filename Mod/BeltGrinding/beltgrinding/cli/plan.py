@@ -1,7 +1,11 @@
 """Planning a job's feeds."""
 
-from . import background, outputs, plan_batch, settings
+from pathlib import Path
+
+from . import background, outcome, outputs, plan_batch, rounds_table, settings
 from .messages import print_text
+
+PLANNING = 0.6  # of the time; the rest reads and simulates what was written
 
 
 def add(commands):
@@ -19,26 +23,33 @@ def add(commands):
     )
     plan_batch.add(plan)
     plan.add_argument("-q", "--quiet", action="store_true", help="no progress, no summary")
+    outcome.add(plan)
     outputs.add(plan)
     plan.set_defaults(do=_plan)
 
 
 def _plan(arguments):
     from ..job import inputs, load as jobs
-    from ..planning import apply, rounds as plans
+    from ..planning import apply, from_file, rounds as plans
     from ..scan import stock as scan_stock
 
+    outcome.check(arguments)
     wanted = plans.validate(settings.given(arguments.settings, arguments.set))
     job = jobs.load(arguments.job)
     read = [arguments.job, *arguments.stock, *inputs.files(job)]
 
-    def told(one):
-        if not arguments.quiet:
-            print_text(line(one))
-
     def one_part(scan, folder, options):
         """(Plan, alignment or None) of a part with its own stock; written into the folder."""
+        told = None if arguments.quiet else rounds_table.Table().told
         apply.check(job, folder, read, arguments.force)
+
+        def write(found, entry=None):
+            """(names of the written programs, warnings)"""
+            return apply.write(found, folder, read, arguments.force, entry)
+
+        def programs(found):
+            write(found)
+            return jobs.load(Path(folder, apply.JOB))["programs"]
 
         def work(context):
             mine, laid = job, None
@@ -48,46 +59,59 @@ def _plan(arguments):
                 )
                 if laid is not None:
                     arguments.messages.print_warnings(laid["warnings"])
-            return plans.plan(mine, wanted, context, told), laid
+            if not wanted["check"]:
+                return plans.plan(mine, wanted, context, told), None, laid
+            searched = {**wanted, "check": False}
+            found = plans.plan(mine, searched, context.part(0.0, PLANNING), told)
+            part = context.part(PLANNING, 1.0)
+            return found, from_file.check(found, folder, programs, part, told), laid
 
-        found, laid = background.run(work, arguments.quiet)
-        written, warnings = apply.write(found, folder, read, arguments.force)
+        found, checked, laid = background.run(work, arguments.quiet)
+        found = found if checked is None else checked.plan
+        written, warnings = write(found, None if checked is None else checked.entry)
         arguments.messages.print_warnings(warnings)
+        tell_checked(arguments, checked)
         if not arguments.quiet:
-            print_text(text(plans.summary(found)))
-            arguments.messages.print_events(found.after.events, found.after.job)
+            print_text(text(plans.summary(found), checked is not None))
             names = ", ".join(written) if written else "poses in job.json"
             print_text(f"programs: {names}; results in {folder}")
+        outcome.tell(arguments, found.after, wanted["wanted_share"])
         return found, laid
 
     plan_batch.each(arguments, one_part)
 
 
+def tell_checked(arguments, checked):
+    """Prints where the written programs fall short of the plan (``from_file.Checked``, or None)."""
+    if checked is not None and not arguments.quiet:
+        arguments.messages.print_warnings(checked.short)
+        arguments.messages.print_notes(checked.notes)
+
+
 def line(one):
-    kind = f"in {one['levels']} levels: " if "levels" in one else ""
-    kind += "coarse: " if one.get("resolution") == "coarse" else ""
     return (
-        f"{kind}{100 * one['in_tolerance']:.1f} % of the area in tolerance, "
+        f"{100 * one['in_tolerance']:.1f} % of the area in tolerance, "
         f"{100 * one['above']:.1f} % too much left, {100 * one['below']:.1f} % cut too deep, "
         f"rms {one['rms_mm']:.3f} mm, {one['process_time_s']:.1f} s of grinding"
     )
 
 
-def text(summary):
-    """A plan's summary in words."""
+def text(summary, from_file, before=True):
+    """A plan's summary in words. ``from_file``: its figures are those of the written programs; ``before``: those of the job
+    as it was are told, too."""
     from ..planning.pictures import WORDS
 
     if not summary["better"]:
         lines = ["nothing better was found: the feeds stay as they are"]
     else:
-        before, after = summary["before"], summary["after"]
-        if summary["checked"]:
-            before, after = (summary["checked"][k] for k in ("before", "after"))
-        lines = [f"before: {line(before)}", f"planned: {line(after)}"]
-        if summary["checked"]:
-            lines[1] += " (both at half the spacing and step)"
+        first, after = summary["before"], summary["after"]
+        lines = [f"before: {line(first)}"] if before else []
+        lines.append(f"planned: {line(after)}")
+        if from_file:
+            lines[-1] += " (the written program read again, at half the spacing and step)"
         if "sure_share" in after:
-            lines += [f"before, {_sure(before)}", f"planned, {_sure(after)}"]
+            lines += [f"before, {_sure(first)}"] if before else []
+            lines.append(f"planned, {_sure(after)}")
         if after.get("over_limit", 0.0) > 1e-6:
             lines.append(
                 f"the greatest pressure, {after['peak_pressure_MPa']:.3g} MPa, is {100 * after['over_limit']:.1f} % "

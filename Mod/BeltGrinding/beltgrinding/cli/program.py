@@ -14,13 +14,20 @@ def add(commands):
         help="read a robot program, write changes back into it, or convert it",
         usage="beltgrind program FILE [-o POSES.csv] [--strict]\n"
         "       beltgrind program write ORIGINAL CHANGES.csv -o NEW\n"
-        "       beltgrind program convert FILE -o NEW.src|.mod|.script|.csv",
+        "       beltgrind program convert FILE -o NEW.src|.mod|.script|.ls|.jbi|.csv",
         description="Says what is in a robot program. write: changed speeds, forces and offsets "
         "go back into the original, nothing else changes. convert: writes it in another language.",
     )
     program.add_argument("program", nargs="+", metavar="FILE", help="the program's file")
     program.add_argument("-o", "--output", help="CSV of every programmed pose; the new program")
     _add_frames(program)
+    program.add_argument(
+        "--force-device",
+        metavar="JSON",
+        help="what sets the pressing force in the program that is read, and in the one that is written: a file with "
+        "the job's belt_machine.force_device, a job, or that JSON itself (docs/force-device.md)",
+    )
+    add_form(program, "as the source's motions say")
     program.add_argument(
         "--roll",
         metavar="hold|along|X,Y,Z",
@@ -52,7 +59,7 @@ def add(commands):
     raster = commands.add_parser("raster", help="lay passes on the job's faces (docs/raster.md)")
     raster.add_argument("job", help="job.json; it need not have a program yet")
     raster.add_argument(
-        "-o", "--output", required=True, help="program: .csv, .src, .mod or .script"
+        "-o", "--output", required=True, help="program: .csv, .src, .mod, .script, .ls or .jbi"
     )
     raster.add_argument("--settings", help="JSON file of the settings")
     raster.add_argument(
@@ -86,6 +93,7 @@ def add(commands):
         help="PNG of the passes on the part from two sides, and of what is left out and why",
     )
     _add_frames(raster)
+    add_form(raster)
     outputs.add(raster)
     raster.set_defaults(do=_raster)
     reach = commands.add_parser("reach", help="follow a job's programs with its robot's joints")
@@ -93,6 +101,24 @@ def add(commands):
     reach.add_argument("-o", "--output", help="CSV for the joints at every pose")
     outputs.add(reach)
     reach.set_defaults(do=_reach)
+
+
+def add_form(command, default="spline"):
+    """The option ``--form`` of a new program."""
+    command.add_argument(
+        "--form",
+        choices=("spline", "zones"),
+        default="spline" if default == "spline" else "",
+        help="how the controller follows the passes: KRL's as spline blocks, which a KRC2 does not know, or by zones "
+        f"of at most half a block; other languages by such zones (default: {default})",
+    )
+
+
+def _as_followed(form, job):
+    """How ``write_program`` writes passes that were laid or planned for a job."""
+    from ..programs.force_device import of_job
+
+    return {"form": form, "digits": "robot", "force_device": of_job(job)}
 
 
 def _add_frames(command):
@@ -166,7 +192,7 @@ def _frame_words(job):
 def _program(arguments):
     from ..base.files import cannot_be_written, write_whole
     from ..engine import Fact, InputError
-    from ..programs import given, table
+    from ..programs import force_device, given, table
     from ..programs.patch.patch import patch
     from ..programs.registry import read_program
     from ..programs.writers.writer import write_program
@@ -192,6 +218,10 @@ def _program(arguments):
             "program {action}: --base and --tool are convert's",
             action=action,
         )
+    if action != "convert" and arguments.form:
+        raise InputError(
+            "cli.form_of_new_programs", "program {action}: --form is convert's", action=action
+        )
     if action == "write" and arguments.roll:
         raise InputError(
             "cli.roll_of_written", "program write: --roll changes nothing in the original"
@@ -207,21 +237,27 @@ def _program(arguments):
             option="--values" if arguments.values else "--units",
         )
     outputs.check(arguments, [arguments.output], files)
+    device = force_device.device_of(arguments.force_device)
     notes = []
     try:
         if action == "write":
-            changed = patch(*files, arguments.output)
+            changed = patch(*files, arguments.output, device)
             print(
                 json.dumps({"changed": len(changed), "motions": changed}, indent=2, allow_nan=False)
             )
             return
         program = read_program(
-            files[0], **_roll(arguments), values=arguments.values, units=arguments.units
+            files[0],
+            **_roll(arguments),
+            values=arguments.values,
+            units=arguments.units,
+            force_device=device,
         )
         read, said = program.counted()
         arguments.status = int(arguments.strict and read < said)
         if action == "convert" and arguments.status == 0 and read:
-            notes = write_program(arguments.output, None, program, **_frames(arguments))
+            options = {"form": arguments.form, "force_device": device}
+            notes = write_program(arguments.output, None, program, **_frames(arguments), **options)
         elif arguments.write_values:
             data, varies = given.explored(
                 program, files[0], lambda values: read_program(files[0], values=values)
@@ -238,10 +274,11 @@ def _program(arguments):
                 arguments.messages.print_notes([note])
             return
         elif action == "read" and arguments.output and read:
+            Path(arguments.output).parent.mkdir(parents=True, exist_ok=True)
             write_whole(Path(arguments.output), table.poses_csv(program).encode())
     except OSError as error:
         raise cannot_be_written(arguments.output, error) from None
-    arguments.messages.print_notes(notes)
+    arguments.messages.print_written(notes)
     found = table.summary(program, arguments.messages.everything)
     print(json.dumps(found, indent=2, allow_nan=False))
     _tell_read(arguments, program, read, said)
@@ -340,11 +377,12 @@ def _write_raster(arguments, file, job, found):
 
     try:
         made = raster.program(found, **_frame_words(job))
-        notes = write_program(file, None, made, **_frames(arguments))
+        followed = _as_followed(arguments.form, job)
+        notes = write_program(file, None, made, **_frames(arguments), **followed)
     except OSError as error:
         raise cannot_be_written(file, error) from None
     arguments.messages.print_warnings(found["warnings"])
-    arguments.messages.print_notes(notes)
+    arguments.messages.print_written(notes)
 
 
 def _reach(arguments):

@@ -9,6 +9,7 @@ from ..base import records, schemas
 from ..base.kinds import Json, known
 from ..engine import InputError
 from ..geometry import fork, free_run
+from ..programs import force_device
 from .settings import BeltMachine
 
 if TYPE_CHECKING:
@@ -46,6 +47,7 @@ def filled(machine: dict[str, Any], rules: Json) -> None:
 def check(job: Json) -> None:
     """Raises InputError for what the schema cannot say of a validated job's belt machine."""
     machine = job["belt_machine"]
+    force_device.device_of(machine.get("force_device"))
     if wheel_presses(machine):
         return check_run(machine)
     if job["law"]["model"] == "geometric":

@@ -10,6 +10,7 @@ import numpy as np
 from ..base import frames, records
 from ..base.kinds import Array, Facts, Floats, Json, known
 from ..engine import InputError, core
+from ..programs.force_device import ForceDevice
 from .settings import Job, Program
 
 DEFAULT_FEED = 100.0  # mm/s, for poses and programs that set none
@@ -79,10 +80,11 @@ def program_arrays(
     warnings: Facts,
     pose_of: PoseOf | None = None,
     holding: str | None = None,
+    force_device: ForceDevice | None = None,
 ) -> dict[str, Array]:
     """dict(frames, feeds, forces, rapid, lines, zones, gaps) of a job's program, overrides applied.
     ``pose_of``: of joint angles, as in ``Program.path_arrays``. ``holding``: cell.holding, with which a
-    program must go.
+    program must go. ``force_device``: of the job (``force_device.of_job``), by whose statements its file sets forces.
     """
     program = records.made(Program, program)
     problems: Sequence[core.Fact] = []
@@ -110,6 +112,7 @@ def program_arrays(
             program.roll,
             program.roll_direction,
             program.values,
+            force_device=force_device,
         )
         arrays = read.path_arrays(DEFAULT_FEED, pose_of)  # may find more problems
         read.check_holding(holding)

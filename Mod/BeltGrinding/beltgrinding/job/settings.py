@@ -163,6 +163,23 @@ class ForceDynamics:
 
 
 @dataclass(frozen=True, kw_only=True)
+class ForceDevice:
+    """``belt_machine.force_device`` of a job."""
+
+    kind: Literal["none", "analog", "controller", "call", "template"]
+    name: str
+    output: int
+    template: str
+    scale_per_N: float
+    offset: float
+    least_N: float
+    greatest_N: float
+    ramp_N_s: float
+    dead_time_s: float
+    resolution_N: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class BeltMachine:
     """``belt_machine`` of a job."""
 
@@ -182,6 +199,7 @@ class BeltMachine:
     robot_stiffness_N_per_mm: float
     wheel_density_kg_m3: float
     force_dynamics: ForceDynamics
+    force_device: ForceDevice
     contact_spacing_mm: float
     contact_tolerance: float
 
@@ -352,6 +370,7 @@ class RobotModel:
 class Robot:
     """``robot`` of a job."""
 
+    controller: str
     preset: str
     model: RobotModel
     base_from_robot: Frame | None = None

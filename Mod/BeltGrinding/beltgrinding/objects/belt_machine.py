@@ -7,6 +7,7 @@ from typing import Any
 from ..base import schemas
 from ..engine import InputError
 from ..job.machine import FREE_BELT, PLATEN, SMALL_WHEEL, WHEEL, WHEELS, check_run
+from ..programs.force_device import ForceDevice, of_job
 from .belt import Belt
 from .geometry import matrix, placement_to_job
 from .kinds import DocumentObject
@@ -52,6 +53,19 @@ KIND_KEYS = {
     PLATEN: (KIND, *RUN_KEYS, *PLATEN_KEYS, *FRAME_KEYS),
     SMALL_WHEEL: (KIND, *FORK_KEYS),
 }
+DEVICE_KEYS = (
+    Key("ForceDevice", "Enumeration", "Force device", "belt_machine.force_device.kind"),
+    Key("DeviceName", "String", "Force device", "belt_machine.force_device.name"),
+    Key("DeviceOutput", "Integer", "Force device", "belt_machine.force_device.output"),
+    Key("DeviceTemplate", "String", "Force device", "belt_machine.force_device.template"),
+    Key("DeviceScale", "Float", "Force device", "belt_machine.force_device.scale_per_N"),
+    Key("DeviceOffset", "Float", "Force device", "belt_machine.force_device.offset"),
+    Key("DeviceLeast", "Force", "Force device", "belt_machine.force_device.least_N"),
+    Key("DeviceGreatest", "Force", "Force device", "belt_machine.force_device.greatest_N"),
+    Key("DeviceRamp", "Float", "Force device", "belt_machine.force_device.ramp_N_s"),
+    Key("DeviceDeadTime", "Float", "Force device", "belt_machine.force_device.dead_time_s"),
+    Key("DeviceResolution", "Force", "Force device", "belt_machine.force_device.resolution_N"),
+)
 KEYS = (
     Key("WheelRadius", "Length", "Wheel", "belt_machine.wheel.radius_mm"),
     Key("WheelWidth", "Length", "Wheel", "belt_machine.wheel.width_mm"),
@@ -84,6 +98,7 @@ KEYS = (
     Key("SpeedLimit", "Speed", "Control", "belt_machine.force_dynamics.speed_limit_mm_s"),
     Key("OvershootLimit", "Float", "Control", "belt_machine.force_dynamics.overshoot_limit"),
     Key("BounceTime", "Float", "Control", "belt_machine.force_dynamics.bounce_s"),
+    *DEVICE_KEYS,
     Key("RobotStiffness", "Float", "Control", "belt_machine.robot_stiffness_N_per_mm"),
     Key("ContactSpacing", "Length", "Contact", "belt_machine.contact_spacing_mm"),
     Key("ContactTolerance", "Float", "Contact", "belt_machine.contact_tolerance"),
@@ -92,6 +107,7 @@ KEYS = (
     Key("Clearance", "Length", "Bodies", "cell.clearance_mm"),
     Key("WheelInset", "Length", "Bodies", "cell.wheel_inset_mm"),
     Key("Robot", "String", "Robot", "robot.preset"),
+    Key("Controller", "String", "Robot", "robot.controller"),
     Key("RobotModel", "JSON", "Robot", "robot.model"),
     Key("StartJoints", "JSON", "Robot", "robot.start_joints_deg"),
     Key("LinkRadii", "JSON", "Robot", "robot.link_radii_mm"),
@@ -207,6 +223,10 @@ class BeltMachine(Proxy):
         for name, (key, _) in ROBOT_FRAMES.items():
             job["robot"][key] = placement_to_job(getattr(obj, name))
         return job
+
+    def force_device(self, obj: DocumentObject) -> ForceDevice | None:
+        """What sets the pressing force in programs; None: nothing. Raises InputError."""
+        return of_job(self.to_job(obj))
 
     def robot(self, obj: DocumentObject) -> dict[str, Any]:
         """The part of a job under 'robot'; of nothing else, so that a cell is drawn whatever else is wrong."""

@@ -16,6 +16,7 @@ from ..base.kinds import Array, Context, Json
 from ..engine import InputError
 from ..cell.tool_path import tool_path
 from ..planning import apply, grinding, pictures, rounds as plans
+from ..programs.force_device import ForceDevice
 from ..programs.patch.patch import patch
 from . import job_inputs, result_files
 from .job_data import children, inspection
@@ -23,7 +24,7 @@ from .kinds import DocumentObject
 from .properties import Key, Output, add_keys, add_outputs, from_job, to_job
 from .proxy import Proxy
 from .raster_path import KEYS as PASSES, RasterPath, settings_of, take
-from .robot_path import RobotPath, read_again
+from .robot_path import RobotPath, force_device, read_again
 
 KEYS = (
     Key("Goal", "Enumeration", "Goal", "plan.goal"),
@@ -181,6 +182,7 @@ class Work:
             plan = plans.plan(data, self.settings, context, told, self.sources)
             return Found(plan, self.planned, words=words)
         ground = grinding.grind(data, self.raster, self.settings, context, told)
+        ground = ground._replace(plan=plans.against(ground.plan, data, context))
         return Found(ground.plan, self.planned, ground, words)
 
 
@@ -332,7 +334,7 @@ def write_programs(obj: DocumentObject, folder: Path | str) -> tuple[list[Path],
     """
     if not obj.Fingerprint:
         raise InputError("planning.none_yet", "{object}: nothing is planned yet", object=obj.Label)
-    todo: list[tuple[str, Any, Path]] = []
+    todo: list[tuple[str, Any, Path, ForceDevice | None]] = []
     without: list[str] = []
     for name, changes in zip(obj.Paths, json.loads(obj.Changes)):
         path = obj.Document.getObject(name)
@@ -340,22 +342,24 @@ def write_programs(obj: DocumentObject, folder: Path | str) -> tuple[list[Path],
             without.append(name if path is None else path.Label)
             continue
         output = Path(folder, os.path.basename(path.Source))
-        _check_program(path, output, [one for *_, one in todo])
-        todo.append((path.Source, changes, output))
+        _check_program(path, output, [one[2] for one in todo])
+        todo.append((path.Source, changes, output, force_device(path)))
     with job_inputs.scratch_folder() as scratch:  # all of them can be written, or none is
-        for number, (source, changes, output) in enumerate(todo):
+        for number, (source, changes, output, device) in enumerate(todo):
             tried = Path(scratch, str(number))
             tried.mkdir()
-            _write_program(source, changes, tried / output.name)
-    for source, changes, output in todo:
-        _write_program(source, changes, output)
-    return [output for *_, output in todo], without
+            _write_program(source, changes, tried / output.name, device)
+    for source, changes, output, device in todo:
+        _write_program(source, changes, output, device)
+    return [one[2] for one in todo], without
 
 
-def _write_program(source: str, changes: Sequence[Any], output: Path) -> None:
+def _write_program(
+    source: str, changes: Sequence[Any], output: Path, device: ForceDevice | None
+) -> None:
     try:
         if changes:
-            patch(source, changes, output)
+            patch(source, changes, output, device)
         else:
             write_whole(output, Path(source).read_bytes())
     except OSError as error:

@@ -20,6 +20,7 @@ from ..job.poses import DEFAULT_FEED
 from ..programs.program import Motion
 from ..programs.languages.roll import RULES, lay
 from ..programs.problems import ordered
+from ..programs.force_device import ForceDevice
 from ..programs.registry import read_program, told_problems
 from ..programs.writers.frames import words_of_cell
 from ..programs.writers.writer import write_program
@@ -257,16 +258,17 @@ def read_arrays(
     roll: str | None = None,
     direction: Sequence[float] | None = None,
     values: Json | None = None,
+    device: ForceDevice | None = None,
 ) -> tuple[Program, dict[str, Array]]:
     """(Program, arrays) of a robot program's file; the window stays alive meanwhile. Raises InputError,
     and Cancelled where a person cancels it; fewer than two poses are refused unless the program asks for values
     that may bring more. ``roll``, ``direction``: as ``languages.roll.lay`` takes them; ``values``: as
-    ``read_program`` does.
+    ``read_program`` does, and so the force device.
     """
 
     def work(context: Context) -> tuple[Program, dict[str, Array]]:
         with stoppable(context or core.RunContext()):
-            program = read_program(path, roll, direction, values)
+            program = read_program(path, roll, direction, values, force_device=device)
             return program, program.path_arrays(DEFAULT_FEED)
 
     text = FreeCAD.Qt.translate("BeltGrinding", "Reading {}").format(os.path.basename(path))
@@ -289,7 +291,14 @@ def read_arrays(
 
 def read_again(obj: DocumentObject) -> dict[str, Array]:
     """The arrays that the file of a RobotPath gives now, as the object reads it. Raises InputError, Cancelled."""
-    return read_arrays(obj.Source, *_roll(obj), json.loads(obj.Values) if obj.Values else None)[1]
+    values = json.loads(obj.Values) if obj.Values else None
+    return read_arrays(obj.Source, *_roll(obj), values, force_device(obj))[1]
+
+
+def force_device(obj: DocumentObject) -> ForceDevice | None:
+    """What sets the pressing force in the programs of a RobotPath's belt machine. Raises InputError."""
+    machine = obj.Machine
+    return None if machine is None else machine.Proxy.force_device(machine)
 
 
 def follow(obj: DocumentObject) -> None:
@@ -331,7 +340,8 @@ def load_program(
     kept = "" if os.path.abspath(path) != obj.Source else obj.Values
     if given is not None:
         kept = json.dumps(given, allow_nan=False)
-    program, arrays = read_arrays(path, *_roll(obj), json.loads(kept) if kept else None)
+    values_kept = json.loads(kept) if kept else None
+    program, arrays = read_arrays(path, *_roll(obj), values_kept, force_device(obj))
     if obj.Machine is not None:
         program.check_holding(obj.Machine.Holding)
     set_arrays(obj, arrays)
@@ -373,5 +383,8 @@ def write(obj: DocumentObject, file: Path | str, **options: Any) -> Any:
     ]
     options.setdefault("tools", obj.ProgramTool.strip() or None)
     options.setdefault("bases", obj.ProgramBase.strip() or None)
+    options.setdefault("form", "spline")
+    options.setdefault("digits", "robot")
+    options.setdefault("force_device", force_device(obj))
     options.setdefault("comment", f"{obj.Label}, {len(motions)} poses")
     return write_program(file, None, motions, **options)

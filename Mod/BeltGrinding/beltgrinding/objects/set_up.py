@@ -127,10 +127,11 @@ def import_program(
     program = document.addObject("Path::FeaturePython", "RobotPath")
     with removed_on_error(program):
         robot_path.RobotPath(program)
+        if job is not document:  # whose force device the file may use
+            program.Machine = child(job, belt_machine.BeltMachine)
         robot_path.load_program(program, path, **properties)
         program.Label = Path(path).stem
         if job is not document:
-            program.Machine = child(job, belt_machine.BeltMachine)
             job.addObject(program)
         program.recompute()
     if job is not document:
@@ -184,7 +185,7 @@ def make_raster(
 
 
 def export_program(path: DocumentObject, file: Path | str, **options: Any) -> Any:
-    """Writes a RobotPath as a new robot program (.src, .mod, .script, .csv), overrides applied.
+    """Writes a RobotPath as a new robot program (.src, .mod, .script, .ls, .jbi, .csv), overrides applied.
 
     Poses are written as they are, arcs as the chords they were cut into. Tool and base are set as the
     path's ``ProgramTool`` and ``ProgramBase`` say; where the belt machine has a robot, their numbers are

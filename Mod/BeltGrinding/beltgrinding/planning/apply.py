@@ -32,11 +32,16 @@ RESULT = "result"
 
 
 def write(
-    found: Plan, folder: Path | str, read: Iterable[Path | str] = (), force: bool = False
+    found: Plan,
+    folder: Path | str,
+    read: Iterable[Path | str] = (),
+    force: bool = False,
+    from_file: Json | None = None,
 ) -> tuple[list[str], Facts]:
     """Writes a ``Plan`` into ``folder``: job.json (the job with the planned programs), the programs' files with new
     feeds and nothing else changed, feeds.csv, plan.json, plan.png, and the result in the folder ``result``. Never over a file
-    of ``read`` or of the job's inputs; over others only if a plan wrote them, or by ``force``.
+    of ``read`` or of the job's inputs; over others only if a plan wrote them, or by ``force``. ``from_file``: what the
+    written programs do, for plan.json (``from_file.Checked``).
 
     Returns (names of the program files that were written, warnings: why a program's file could not be). Such a
     program stands in job.json pose by pose. Raises InputError.
@@ -68,11 +73,14 @@ def write(
         programs.append(entry)
     job = json.dumps({**found.job, "programs": programs}, indent=1, allow_nan=False)
     found.after.write(folder / RESULT, force, read)
+    summary = plans.summary(found)
+    if from_file is not None:
+        summary["from_file"] = dict(from_file)
     drawn = pictures.composed(pictures.draw(found), found.why["shares"])
     for name, data in (
         (JOB, (job + "\n").encode()),
         (FEEDS, feeds_csv(found).encode()),
-        (PLAN, (json.dumps(plans.summary(found), indent=1, allow_nan=False) + "\n").encode()),
+        (PLAN, (json.dumps(summary, indent=1, allow_nan=False) + "\n").encode()),
         (PICTURE, drawn),
     ):
         try:
@@ -147,7 +155,7 @@ def _patched(
         if "values" in program and not isinstance(program["values"], str):
             raise InputError("planning.inline_values", "its values stand in the job")
         if wanted:
-            patch(source, wanted, output)
+            patch(source, wanted, output, found.commands.device)
         else:
             write_whole(output, Path(source).read_bytes())
     except OSError as error:

@@ -9,12 +9,16 @@ import numpy as np
 
 from ..base import records
 from ..base.kinds import Array, Facts, Floats, Json
-from ..engine import InputError
-from ..job import poses
+from ..engine import InputError, core
+from ..job import engine_input, poses, robot_time
 from ..job.poses import program_name
 from ..job.settings import Job
 from ..job.typed import typed
 from ..presets import robot as robots
+from ..programs.force_device import of_job
+
+STILL = 1e-9  # mm; less is no way
+FORCE_DIGITS = 1  # of N, in programs
 
 
 class Commands:
@@ -26,9 +30,13 @@ class Commands:
         self, job: Job | Json, settings: Json, sources: Sequence[str | None] | None = None
     ) -> None:
         """``sources``: of each program the file whose lines its poses name, or None; by default those that the job
-        names. Raises InputError for lines that no motion has."""
+        names. By ``settings.timing`` robot the job is to be that of ``robot_time.timed``, and feeds, forces and poses
+        get the digits of programs. Raises InputError for lines that no motion has."""
         self.job: Json = records.plain(job)  # as data, which plans hand out
         job = typed(job)
+        self.device = of_job(job)  # by which programs set their forces
+        self.limits = robot_time.limits(job) if settings["timing"] == "robot" else None
+        self._time_law = engine_input.time_law(job.simulation)
         self.sources = sources or [program.file for program in job.programs]
         self.arrays: list[dict[str, Array]] = []
         warnings: Facts = []
@@ -40,8 +48,14 @@ class Commands:
                     warnings,
                     robots.pose_function(self.job["robot"]),
                     job.cell.holding,
+                    self.device,
                 )
             )
+        if self.limits is not None:
+            self.arrays = [
+                one if source else robot_time.laid_out(one, self.limits)
+                for source, one in zip(self.sources, self.arrays)
+            ]
         groups: list[int] = []
         programs: list[int] = []
         for k, (source, arrays) in enumerate(zip(self.sources, self.arrays)):
@@ -66,6 +80,7 @@ class Commands:
         self.force_range = self._force_range(
             settings
         )  # (commands,) twice: least and greatest factor
+        self.feed_range = self._feed_range(settings)  # (commands,) twice: least and greatest mm/s
 
     def __len__(self) -> int:
         return len(self.program)
@@ -119,6 +134,22 @@ class Commands:
                     greatest[own] = max(1.0, settings["force_max_N"] / reference)
         return least, greatest
 
+    def _feed_range(self, settings: Json) -> tuple[Floats, Floats]:
+        """Least and greatest feeds of commands, mm/s: as the settings say, and in the robot's time no greater than its
+        blocks and its accelerations let it go."""
+        least, greatest = settings["feed_min_mm_s"], settings["feed_max_mm_s"]
+        whole = np.full(len(self), greatest)
+        if self.limits is None:
+            return np.full(len(self), least), whole
+        way = self._lengths()
+        block = np.where(way > STILL, way / self.limits.least_block_s, np.inf)
+        np.minimum.at(whole, self.group, np.where(self.rapid, np.inf, block))
+        fastest = np.where(self.kept, self.feed(), whole)
+        seconds, own = self.times(fastest), self.way()
+        reached = np.where(own > STILL, own / np.maximum(seconds, 1e-12), greatest)
+        whole = robot_time.rounded_feeds(np.minimum(whole, reached))
+        return np.minimum(least, whole), whole
+
     def presses(self) -> bool:
         """Whether forces may change."""
         least, greatest = self.force_range
@@ -140,6 +171,27 @@ class Commands:
     def seconds(self, feeds: Floats) -> Floats:
         """(commands,) s that they take at feeds (commands,) mm/s, without acceleration; 0 of rapid motions."""
         return np.bincount(self.group, self._lengths(), len(self)) / np.maximum(feeds, 1e-9)
+
+    def times(self, feeds: Floats) -> Floats:
+        """(commands,) s that they take at feeds (commands,) mm/s by the job's time law; 0 of rapid motions."""
+        new = np.where(self.rapid, self.feeds, feeds[self.group])
+        lasts = [
+            np.diff(
+                core.ToolPath(
+                    **{name: a[name] for name in ("frames", "forces", "rapid", "lines", "zones")},
+                    feeds=new[self.of_program == k],
+                    time_law=self._time_law,
+                ).times(),
+                prepend=0.0,
+            )
+            for k, a in enumerate(self.arrays)
+        ]
+        own = np.where(self.rapid, 0.0, np.concatenate(lasts))
+        return np.bincount(self.group, own, len(self))
+
+    def way(self) -> Floats:
+        """(commands,) mm, 0 of rapid motions."""
+        return np.bincount(self.group, self._lengths(), len(self))
 
     def motion_seconds(self, feeds: Floats) -> Floats:
         """(commands,) s that the shortest motion of each takes."""
@@ -176,6 +228,11 @@ class Commands:
         given = np.concatenate([a["forces"] for a in self.arrays])
         factor = np.ones(len(given)) if factors is None else factors[self.group]
         forces = np.where(self.rapid | (factor == 1.0), given, self.forces * factor)
+        if self.device is not None:
+            for k in np.flatnonzero(~self.rapid & (forces >= 0.0)):
+                forces[k] = self.device.settable(float(forces[k]))
+        if self.limits is not None:
+            forces = np.round(forces, FORCE_DIGITS)
         programs = []
         begin = 0
         for program, arrays in zip(self.job["programs"], self.arrays):

@@ -13,7 +13,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..base import records
 from ..base.kinds import Context, Json, known
 from ..engine import InputError, core
 from ..inspection import verdict as verdicts
@@ -63,9 +62,9 @@ def grind(
 
     Returns a ``Ground``. Raises InputError, Cancelled.
     """
-    data = records.plain(job)
-    job, context = typed(data), context or core.RunContext()
-    settings = _with_forces(job, rounds.validate(settings or {}))
+    context = context or core.RunContext()
+    settings = _with_forces(typed(job), rounds.validate(settings or {}))
+    data, _ = rounds.in_time(job, settings)
     best: dict[str, Any] | None = None
     tried: list[dict[str, Any]] = []
     queue: list[tuple[str, Json]] = [("first", raster_path.validate(raster_settings or {}))]

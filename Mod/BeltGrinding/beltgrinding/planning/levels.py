@@ -29,3 +29,10 @@ def quantised(feeds: Floats, weights: Floats, count: int) -> Floats:
         centres = np.sort(next_)
     own = np.searchsorted(0.5 * (centres[1:] + centres[:-1]), logs)
     return np.exp(centres)[own][inverse]
+
+
+def lowered(feeds: Floats, most: Floats) -> Floats:
+    """(n,) of few different feeds (n,) mm/s each no more than ``most`` (n,): the greatest of them that is, or the least."""
+    values = np.unique(feeds)
+    within = np.searchsorted(values, np.minimum(feeds, most), side="right") - 1
+    return values[np.maximum(within, 0)]

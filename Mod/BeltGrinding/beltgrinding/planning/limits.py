@@ -8,15 +8,18 @@ profiles are found (Bobrow, Dubowsky and Gibson, Int. J. Robotics Research 4, 19
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from ..base.kinds import Array, Floats, Json, known
 from ..engine import InputError
+from ..job.robot_time import rounded_feeds
 from ..job.settings import Job
 from ..job.typed import typed
+from ..programs.force_device import of_job
 
 if TYPE_CHECKING:
     from ..simulation.result import Result
@@ -33,6 +36,35 @@ YIELDING = 0.5  # least exponent with which pressure follows a lowered force: th
 # Two commands each (pairs,), and a number of both (pairs,).
 Edges: TypeAlias = "tuple[Array, Array, Floats]"
 Allowed: TypeAlias = Callable[[float, float], float]  # of a value and mm: the neighbour's
+
+
+def within_device(job: Job, settings: dict[str, Any]) -> dict[str, Any]:
+    """The settings of a plan within what the job's force device sets: its range, and its ramp, which is also the
+    default. Raises InputError where nothing is left."""
+    device = of_job(job)
+    if device is None:
+        return settings
+    least, greatest = settings["force_min_N"], settings["force_max_N"]
+    most = device.greatest_N or math.inf
+    if (least and least > most) or 0.0 < greatest < device.least_N:
+        raise InputError(
+            "planning.device_range",
+            "plan: forces of {least:g} to {greatest:g} N are beyond the force device's, {low:g} to {high:g} N: change "
+            "force_min_N and force_max_N, or belt_machine.force_device",
+            least=least,
+            greatest=greatest or most,
+            low=device.least_N,
+            high=most,
+        )
+    ramp = device.ramp_N_s or math.inf
+    changed = {
+        "force_min_N": max(least, device.least_N) if least else least,
+        "force_max_N": min(greatest, most) if greatest else greatest,
+        "force_change_N_s": min(settings["force_change_N_s"] or ramp, ramp),
+    }
+    if math.isinf(changed["force_change_N_s"]):
+        changed["force_change_N_s"] = 0.0
+    return {**settings, **changed}
 
 
 def refuse(settings: Json) -> None:
@@ -54,7 +86,11 @@ def feeds(commands: Commands, wanted: Floats, weight: Floats, settings: Json) ->
     """
     per_mm, acceleration = settings["feed_change_mm_s_mm"], settings["acceleration_mm_s2"]
     if not per_mm and not acceleration:
-        return wanted
+        return (
+            wanted
+            if commands.limits is None
+            else np.where(commands.kept, wanted, rounded_feeds(wanted))
+        )
     first, second, way = commands.neighbours()
 
     def step(values: Floats) -> Floats | float:
@@ -79,11 +115,16 @@ def feeds(commands: Commands, wanted: Floats, weight: Floats, settings: Json) ->
 
     near = _nearest(wanted, weight, commands.kept, first, second, step)
     # What nothing is planned for, as positioning, may be outside of the limits as it is.
-    near = np.clip(
-        near,
-        np.minimum(settings["feed_min_mm_s"], wanted),
-        np.maximum(settings["feed_max_mm_s"], wanted),
-    )
+    least, greatest = commands.feed_range
+    near = np.clip(near, np.minimum(least, wanted), np.maximum(greatest, wanted))
+    if commands.limits is not None:
+        return _exact(
+            commands,
+            np.where(commands.kept, wanted, rounded_feeds(near)),
+            (first, second, way),
+            lambda value, d: float(rounded_feeds(np.array([up(value, d)]))[0]),
+            down,
+        )
     return _exact(commands, np.where(commands.kept, wanted, near), (first, second, way), up, down)
 
 

@@ -70,11 +70,12 @@ def find(
     border = np.asarray(field.flags) & core.ON_BOUNDARY != 0
     state[(above | below) & _near(field, border)] = BORDER
     least, greatest = commands.force_range
-    slow = (feeds <= settings["feed_min_mm_s"] * (1 + AT)) & (factors >= greatest * (1 - AT))
-    fast = (feeds >= settings["feed_max_mm_s"] * (1 - AT)) & (factors <= least * (1 + AT))
+    slowest, fastest = commands.feed_range
+    slow = (feeds <= slowest * (1 + AT)) & (factors >= greatest * (1 - AT))
+    fast = (feeds >= fastest * (1 - AT)) & (factors <= least * (1 + AT))
     slow, fast = slow & ~commands.kept, fast & ~commands.kept
     most = limits.greatest_factors(result, commands, factors, settings)
-    pressed = (feeds <= settings["feed_min_mm_s"] * (1 + AT)) & (factors >= most * (1 - NEARLY))
+    pressed = (feeds <= slowest * (1 + AT)) & (factors >= most * (1 - NEARLY))
     pressed &= ~slow & ~commands.kept
     held = limits.bound(commands, feeds, factors, settings)
     state[(state == SHARED) & (share(held) > MOST_OF)] = CHANGE

@@ -18,7 +18,7 @@ import numpy as np
 from ..base import records, schemas
 from ..base.kinds import Array, Context, Floats, Json, known
 from ..engine import InputError, core
-from ..job import resolution, spacing
+from ..job import resolution, robot_time, spacing
 from ..job.settings import Job
 from ..job.typed import typed
 from ..job.workpiece import check_faces, read_design
@@ -104,13 +104,14 @@ def plan(
     feeds are given back, and ``better`` is false. Raises InputError (no tolerance, no stock, a tool that no feed
     matters to, limits that contradict each other), Cancelled.
     """
-    data = records.plain(job)
     settings = validate(settings or {})
     context = context or core.RunContext()
+    limits.refuse(settings)
+    data, settings = in_time(job, settings)
     job = typed(data)
     _refuse(job, settings)
     sure.refuse(job, settings)
-    limits.refuse(settings)
+    settings = limits.within_device(job, dict(settings))
     whole_job = resolution.with_mode(settled(data, context), resolution.FULL)
     searched = resolution.with_mode(whole_job, settings["search_resolution"])
     commands = Commands(searched, settings, sources)
@@ -159,6 +160,41 @@ def plan(
         checked,
         settings,
     )
+
+
+def against(found: Plan, data: Json, context: Context = None) -> Plan:
+    """A ``Plan`` of other passes with a job as it was, its own programs among it, as what was before. ``better`` is by
+    that. A job whose programs are no path yet changes nothing. Raises Cancelled."""
+    context = context or core.RunContext()
+    part = context.part(1.0, 1.0)
+    settings = found.settings
+    try:
+        job = in_time(data, settings)[0]
+        job = resolution.with_mode(settled(job, part), resolution.FULL)
+        before = runs.run(job, part, shifts=True)
+    except InputError:
+        return found
+    first, after = (figures(one, settings) for one in (before, found.after))
+    better = _better(after, first, settings) or (
+        settings["goal"] == "time" and least_time.saves(after, first, settings)
+    )
+    checked = dict(found.checked)
+    if checked:
+        fine = runs.run(convergence.scaled(job, "fine"), part, shifts=True)
+        checked["before"] = figures(fine, settings)
+    return found._replace(before=before, better=better, checked=checked)
+
+
+def in_time(job: Job | Json, settings: Json) -> tuple[Json, Json]:
+    """(a validated job under the time that ``settings``, validated, plan in, those with the acceleration that the
+    robot has where they give none). Few levels of feed jump: no acceleration is asked of them."""
+    data = records.plain(job)
+    if settings["timing"] != "robot":
+        return data, settings
+    given = settings["acceleration_mm_s2"]
+    if not given and not settings["levels"]:
+        given = robot_time.limits(data).path_acceleration_mm_s2
+    return robot_time.timed(data), {**settings, "acceleration_mm_s2": given}
 
 
 def _by_rounds(
@@ -286,6 +322,10 @@ def _in_levels(trials: Trials, best: Trial) -> Trial:
     free = ~commands.kept & (best.feeds > 0)
     feeds = best.feeds.copy()
     feeds[free] = levels.quantised(feeds[free], lasts[free], count)
+    if commands.limits is not None:
+        feeds[free] = levels.lowered(
+            robot_time.rounded_feeds(feeds[free]), commands.feed_range[1][free]
+        )
     return trials.tell(trials.simulate(feeds, best.factors), levels=count)
 
 
@@ -314,6 +354,8 @@ def summary(found: Plan) -> dict[str, Any]:
     """The figures of a ``Plan``, as JSON has them."""
     forces = found.commands.force(found.factors)
     return {
+        "timing": found.settings["timing"],
+        "controller": robot_time.limits(found.job).controller,
         "better": found.better,
         "before": figures(found.before, found.settings),
         "after": figures(found.after, found.settings),

@@ -13,6 +13,7 @@ from ..inspection import verdict as verdicts
 from ..job.settings import Job
 from ..job.typed import typed
 from . import limits, sure, with_force
+from .paces import Pace
 from .thinning import Thinned
 
 if TYPE_CHECKING:
@@ -70,6 +71,7 @@ class _Seen:
     ) -> None:
         self.commands, self.result, self.settings = commands, result, settings
         self.feeds, self.factors = feeds, factors
+        self.pace = Pace(commands, feeds)
         lower, upper = verdicts.limits(result.job, result.field)
         self.half = 0.5 * (upper - lower) * np.ones(result.field.size)  # mm
         # mm from the middle of the band
@@ -131,13 +133,12 @@ def following(
     else:
         new, force, found = _feeds_first(seen, time_cost, reach, context)
     force[abs(force - 1.0) <= SAME] = 1.0
-    new = np.clip(new, settings["feed_min_mm_s"], settings["feed_max_mm_s"])
     new, force = np.where(seen.moved, new, feeds), np.where(seen.moved, force, factors)
     matter = with_force.energy(seen.influence, seen.weight)
     new = limits.feeds(commands, new, matter, settings)
     force = limits.factors(commands, force, matter, new, settings)
     # What the feeds and forces in the end should do: limits may have changed them.
-    longer = (feeds / new) ** seen.power
+    longer = seen.pace.longer(new) ** seen.power
     if forces:
         excess = seen.deviation - _removed(seen.influence, longer - 1.0, len(seen.half))
         excess -= _removed(seen.by_force(), force / factors - 1.0, len(seen.half))
@@ -166,40 +167,38 @@ def _feeds_first(
     """(feeds mm/s, factors on forces (commands,), what the solver tells): the feed does what it can, from the job's own
     force or, in a hurry, from the greatest; the force the rest, as much more as the law has it.
     """
-    commands, settings, feeds = seen.commands, seen.settings, seen.feeds
-    power, alpha, own = seen.power, seen.alpha, seen.commands.feed()
-    # How much a command removes, at first order, against the job's: by its time and its force.
-    given = (own / feeds) ** power * seen.factors**alpha
-    slowest = (own / settings["feed_min_mm_s"]) ** power * seen.greatest**alpha / given
-    fastest = (own / settings["feed_max_mm_s"]) ** power * seen.least**alpha / given
+    settings, pace, factors = seen.settings, seen.pace, seen.factors
+    power, alpha = seen.power, seen.alpha
+    # How much a command removes, at first order, against now: by its time and its force.
+    slowest = pace.longest**power * (seen.greatest / factors) ** alpha
+    fastest = pace.shortest**power * (seen.least / factors) ** alpha
     fastest, slowest = seen.within(fastest, slowest, settings["most_change"] ** reach)
     solver = {"smoothing": settings["smoothing"], "accuracy": with_force.ACCURACY}
     costs = np.zeros(0)
     if time_cost is not None:
         solver.update(HURRIED)
-        costs = time_cost * commands.seconds(feeds)
+        costs = time_cost * pace.now
     found = core.plan_dwell(
         *seen.solver(),
         fastest,
         slowest,
-        1.0 / feeds,
+        1.0 / seen.feeds,
         solver,
         context.part(0.0, 0.0),
         costs,
     )
-    wanted = given * found["factor"]
+    wanted = found["factor"]
     pressed = seen.greatest if time_cost is not None else np.ones(len(wanted))
-    new = own * (pressed**alpha / wanted) ** (1.0 / power)
-    new = np.clip(new, settings["feed_min_mm_s"], settings["feed_max_mm_s"])
-    rest = wanted * (new / own) ** power
-    return new, np.clip(rest ** (1.0 / alpha), seen.least, seen.greatest), found
+    longer = (wanted * (factors / pressed) ** alpha) ** (1.0 / power)
+    new = pace.feeds(np.clip(longer, pace.shortest, pace.longest))
+    rest = wanted / pace.longer(new) ** power
+    return new, np.clip(factors * rest ** (1.0 / alpha), seen.least, seen.greatest), found
 
 
 def _feeds_and_forces(seen: _Seen, reach: float, context: core.RunContext) -> Step:
     """As ``_feeds_first``, both at once."""
     settings, feeds, factors = seen.settings, seen.feeds, seen.factors
-    slowest = (feeds / settings["feed_min_mm_s"]) ** seen.power
-    fastest = (feeds / settings["feed_max_mm_s"]) ** seen.power
+    slowest, fastest = seen.pace.longest**seen.power, seen.pace.shortest**seen.power
     most = min(settings["most_change"], with_force.MOST_TIME) ** reach
     strongest = min(settings["most_change"], with_force.MOST_FORCE) ** reach
     influence, deviation, half, weight = seen.solver()
@@ -217,7 +216,7 @@ def _feeds_and_forces(seen: _Seen, reach: float, context: core.RunContext) -> St
         settings["smoothing"],
         context.part(0.0, 0.0),
     )
-    return feeds / longer ** (1.0 / seen.power), factors * stronger, found
+    return seen.pace.feeds(longer ** (1.0 / seen.power)), factors * stronger, found
 
 
 def _removed(influence: core.Influence, share: Floats, samples: int) -> Array:

@@ -1,4 +1,4 @@
-"""Presets of machines, wheels, belts, materials, robots and force controls, and rubber's modulus.
+"""Presets of machines, wheels, belts, materials, robots, controllers and force controls, and rubber's modulus.
 
 What a macro calls; the modules import each other, not this.
 """
@@ -7,6 +7,7 @@ from .library import (
     actuators,
     apply,
     belts,
+    controllers,
     machines,
     materials,
     problems,
@@ -21,6 +22,7 @@ __all__ = [
     "actuators",
     "apply",
     "belts",
+    "controllers",
     "machines",
     "materials",
     "problems",

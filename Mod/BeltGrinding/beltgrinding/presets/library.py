@@ -26,6 +26,7 @@ __all__ = [
     "actuators",
     "apply",
     "belts",
+    "controllers",
     "machines",
     "materials",
     "problems",
@@ -36,7 +37,16 @@ __all__ = [
     "wheels",
 ]
 
-KINDS = ("machines", "wheels", "belts", "materials", "thermals", "robots", "actuators")
+KINDS = (
+    "machines",
+    "wheels",
+    "belts",
+    "materials",
+    "thermals",
+    "robots",
+    "actuators",
+    "controllers",
+)
 LABELS = {
     "shore_a": "hardness",
     "youngs_modulus": "Young's modulus",
@@ -67,6 +77,7 @@ class Library(NamedTuple):
     thermals: list[dict[str, Any]]
     robots: list[dict[str, Any]]
     actuators: list[dict[str, Any]]
+    controllers: list[dict[str, Any]]
     problems: list[InputError]
 
 
@@ -83,7 +94,7 @@ def user_folder() -> Path:
 
 def library() -> Library:
     """Reads all files. A preset that is wrong is left out and stands in ``problems``."""
-    found = Library([], [], [], [], [], [], [], [])
+    found = Library([], [], [], [], [], [], [], [], [])
     files = [
         *sorted((resources() / "presets").glob("*.json")),
         *sorted(user_folder().glob("*.json")),
@@ -228,6 +239,13 @@ def robots() -> list[dict[str, Any]]:
 def actuators() -> list[dict[str, Any]]:
     """Presets of force controls that take time: as ``wheels``, with lag, moving_mass, damping, speed_limit."""
     return library().actuators
+
+
+def controllers() -> list[dict[str, Any]]:
+    """Presets of robots' controllers: as ``wheels``, with form, interpolation_cycle, path_acceleration,
+    angular_acceleration, rotation_speed, default_zone, least_block_length, look_ahead, perhaps least_block_time.
+    """
+    return library().controllers
 
 
 def problems() -> list[InputError]:

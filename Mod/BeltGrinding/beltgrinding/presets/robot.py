@@ -54,6 +54,8 @@ def validate(robot: Json) -> None:
         )
     if robot["preset"]:
         load_preset(robot["preset"])
+    if robot["controller"]:
+        library.find("controllers", robot["controller"])
     validate_model(model)
 
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from ..base.kinds import Json
 from ..base.regular_files import open_regular, shown
 from ..engine import InputError
-from . import given, left_out
+from . import force_device as devices, given, left_out
 from .problems import LOST, grade, ordered
 from .program import MAX_FILE, ProgramError, bytes_of, lines_of, name_of
 from .languages.roll import lay
@@ -97,13 +97,15 @@ def read_program(
     roll_direction: Sequence[float] | None = None,
     values: Json | Path | str | None = None,
     units: str | None = None,
+    force_device: devices.Given = None,
 ) -> Program:
     """The Program in the file ``path``, its language told by the suffix. Raises ProgramError.
 
     ``roll``, ``roll_direction``: how poses with a free roll are turned (``languages.roll.lay``).
     ``values``: what only the controller knows (``given``), as the content of a values file (a dict) or as
     its file; without it NAME.values.json beside the program, where there is one. ``units``: "mm" or "inch" of a
-    file that does not say it, before that of the values.
+    file that does not say it, before that of the values. ``force_device``: whose statements set the pressing force
+    (``force_device.device_of``); None: the forces are those that the language itself has.
     """
     path = Path(path)
     reader = READERS.get(path.suffix.lower())
@@ -135,7 +137,7 @@ def read_program(
         known = given.load(side) if values or os.path.isfile(side) else None
     if units:
         known = {**(known or given.parsed({}, "")), "units": units}
-    with _no_collection():
+    with _no_collection(), devices.reading(devices.device_of(force_device)):
         try:
             program = reader(path, known)
         except RecursionError:

@@ -17,7 +17,9 @@ from .problems import ordered
 if TYPE_CHECKING:
     from .program import Program
 
-COLUMNS = "index,motion,x_mm,y_mm,z_mm,qw,qx,qy,qz,speed_mm_s,tool,base,file,line".split(",")
+COLUMNS = "index,motion,x_mm,y_mm,z_mm,qw,qx,qy,qz,speed_mm_s,force_N,tool,base,file,line".split(
+    ","
+)
 SHOWN = 20  # problems in a summary, or kinds of them
 
 
@@ -34,10 +36,11 @@ def poses_csv(program: Program) -> str:
             turn = to_quaternions(motion.pose[None, :3, :3])[0]
             values = [*motion.pose[:3, 3].tolist(), *turn.tolist()]
             place = [f"{value:.9g}" for value in values]
-        speed = "" if motion.speed_mm_s is None else f"{motion.speed_mm_s:.9g}"
+        numbers = (motion.speed_mm_s, motion.force_N)
+        told = ["" if number is None else f"{number:.9g}" for number in numbers]
         kind = f"{motion.kind}-AUX" if motion.aux else motion.kind
         names = [cell(name) for name in (motion.tool, motion.base, motion.file)]
-        row = [index, kind, *place, speed, *names, motion.line]
+        row = [index, kind, *place, *told, *names, motion.line]
         writer.writerow(row)
     return text.getvalue()
 

@@ -16,6 +16,7 @@ import numpy as np
 
 from ..base.kinds import Context, Floats, Json
 from ..engine import InputError, core
+from ..job import robot_time
 from ..job.settings import Job
 
 if TYPE_CHECKING:
@@ -28,11 +29,12 @@ TRIES = 1.0, 0.5  # of the way beyond the border
 INSIDE = 0.1  # of half the contact's length: a ramp that begins on the border
 STILL = 1e-6  # mm; less is no way
 SHORTEST = 0.2  # mm; a shorter one is none
+FASTER = 2.0  # times the feed, that plans may come to within the robot's blocks
 
 
 class Entry:
     """What the ends of passes need: ``lead``, mm; ``force``, N, full, None under position
-    control."""
+    control; ``block``, mm: the least way from pose to pose, so that the robot keeps up."""
 
     def __init__(
         self,
@@ -55,6 +57,9 @@ class Entry:
         self.lead = 0.0
         if settings["entry"] == "run_on":
             self.lead = settings["lead_mm"] or self._half
+        self.limits = robot_time.limits(job)
+        feed = FASTER * (settings["entry_feed_mm_s"] or settings["feed_mm_s"])
+        self.block = max(feed * self.limits.least_block_s, self.limits.least_block_mm)
         # A run-out of the user's own is a part of it.
         self.lead = max(self.lead - max(settings["run_out_mm"], 0.0), 0.0)
         if settings["run_out_mm"] < 0.0:  # the border is to be spared
@@ -116,10 +121,12 @@ class Entry:
     def ramp(self, lead: float = 0.0) -> float:
         """mm over which the force grows from where the wheel comes down, ``lead`` mm outside the border: to
         where all of the contact is on the face. Without a lead it is on its border for half of its length at
-        once, and what that half does not remove there is missing: a short ramp."""
+        once, and what that half does not remove there is missing: a short ramp, of one block at least.
+        """
         if self.settings["entry"] == "direct":
             return 0.0
-        return self.settings["ramp_mm"] or lead + (1.0 if lead > 0.0 else INSIDE) * self._half
+        grown = lead + (1.0 if lead > 0.0 else INSIDE) * self._half
+        return self.settings["ramp_mm"] or max(grown, self.block)
 
     def ramps(self, leads: Sequence[float], length: float) -> Floats:
         """mm at both ends of ``length`` mm: shorter, where they do not fit in."""

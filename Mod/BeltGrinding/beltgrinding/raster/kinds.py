@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any, Optional, Protocol, TypeAlias
 
 from ..base.kinds import Array, Floats
+from ..job.robot_time import Limits
 
 # Of a pass, as the core's lines: points, normals, tangents (n, 3), closed, and what it got since.
 Piece: TypeAlias = dict[str, Any]
@@ -31,6 +32,8 @@ class Ramps(Protocol):
 
     force: Any  # N; None under position control
     lead: float
+    block: float  # mm
+    limits: Limits
 
     def leads(self, frames: Floats, outwards: Floats, most: Floats, clearing: Room) -> Floats:
         ...

@@ -10,13 +10,14 @@ import numpy as np
 
 from ..base import frames, records
 from ..base.kinds import Floats, Json
+from ..job import robot_time
 from ..job.settings import Job
 from . import turn_limits
 from .kinds import Levels, Piece, Ramps, Room
 
 STILL = 1e-6  # mm; less is no way
 LEAST_LEAD = 0.2  # mm; a shorter way outside the border is none
-RAMP_STEPS = 6  # poses in a ramp of the force: that of a pose holds on the whole way to it
+RAMP_STEPS = 6  # poses in a ramp of the force, at most: that of a pose holds on the whole way to it
 AHEAD = 0.8  # cosine: so near to its way out, the pass goes on beyond a gap
 UNCUT = (False, False)  # neither end of a piece lies beside what was left out
 CELL = ("base_from_work", "tcp_from_contact", "tcp_from_work", "base_from_contact")
@@ -72,7 +73,8 @@ def assemble(
     if not parts:
         return joined
     joined["frames"] = frames.base_from_tcp(joined["contacts"], **cell)
-    joined["feeds"] = tcp_feeds(joined, settings["max_tcp_feed_mm_s"])
+    feeds = tcp_feeds(joined, settings["max_tcp_feed_mm_s"])
+    joined["feeds"] = _within_blocks(joined, feeds, entry.limits.least_block_s)
     joined["lines"] = np.zeros(count, dtype=int)
     joined["zones"] = np.full(count, -1.0)  # the job's default
     return joined
@@ -92,6 +94,15 @@ def tcp_feeds(path: Json, most: float) -> Floats:
     moves = np.flatnonzero((tcp > STILL) & (contact > STILL) & ~path["rapid"][1:])
     feeds[moves + 1] *= tcp[moves] / contact[moves]
     return np.minimum(feeds, most)
+
+
+def _within_blocks(path: Json, feeds: Floats, least: float) -> Floats:
+    """mm/s (n,): ``feeds`` (n,) of the tool centre point, with which no motion but rapid ones lasts less than ``least``
+    s; to the tenth below where that lowers them."""
+    way = np.linalg.norm(np.diff(path["frames"][:, :3, 3], axis=0), axis=1)
+    most = np.append(np.inf, np.where(way > STILL, way / least, np.inf))
+    most[path["rapid"]] = np.inf
+    return np.where(most < feeds, robot_time.rounded_feeds(most), feeds)
 
 
 def _strokes(
@@ -313,26 +324,66 @@ def _places(points: Floats) -> Floats:
     return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
 
 
-def _with_ramps(piece: Piece, entry: Ramps) -> Piece:
-    """The piece with poses in its ramps, between which the force changes."""
+def _with_ramps(piece: Piece, settings: Json, entry: Ramps) -> Piece:
+    """The piece with poses in its ramps, between which the force changes, and none needlessly so near that the robot would
+    be slow: a ramp changes at poses that are there already, if they are not farther than half a block.
+    """
+    piece = _spaced(piece, entry.block, settings)
     s = _places(piece["points"])
     ramps = entry.ramps(piece["leads"], s[-1])
     if ramps[0] <= 0.0:
         return piece
-    steps = np.arange(1, RAMP_STEPS + 1) / RAMP_STEPS
-    more = np.concatenate([ramps[0] * steps, (s[-1] - ramps[1] * steps)[:-1]])
-    if ramps.sum() < s[-1] - LEAST_LEAD:
-        more = np.append(more, s[-1] - ramps[1])
-    more = more[abs(more[:, None] - s[None]).min(axis=1) > LEAST_LEAD / RAMP_STEPS]
-    at = np.concatenate([s, more])
-    order = np.argsort(at, kind="stable")
-    grown = {}
-    for name in ("points", "normals", "tangents"):
-        rows = np.column_stack([np.interp(more, s, piece[name][:, k]) for k in range(3)])
-        if name != "points":
-            rows /= np.linalg.norm(rows, axis=1)[:, None]
-        grown[name] = np.vstack([piece[name], rows])[order]
-    return {**piece, **grown}
+    first, last = (_ramp_places(ramp, entry.block) for ramp in ramps)
+    more = np.sort(np.concatenate([first, s[-1] - last]))
+    near = 0.5 * min(entry.block, float(ramps.max()))
+    more = more[abs(more[:, None] - s[None]).min(axis=1) > near]
+    more = more[np.diff(more, prepend=-np.inf) > near]
+    return _posed(piece, s, np.sort(np.concatenate([s, more])))
+
+
+def _posed(piece: Piece, s: Floats, places: Floats) -> Piece:
+    """The piece with poses at ``places`` (k,) mm along it, of which its own are at ``s`` (n,)."""
+    posed = {
+        name: np.column_stack([np.interp(places, s, piece[name][:, k]) for k in range(3)])
+        for name in ("points", "normals", "tangents")
+    }
+    for name in ("normals", "tangents"):
+        posed[name] /= np.linalg.norm(posed[name], axis=1)[:, None]
+    return {**piece, **posed}
+
+
+def _ramp_places(ramp: float, block: float) -> Floats:
+    """mm from the end of a pass of the poses in a ramp of ``ramp`` mm, none nearer than ``block`` mm to the next."""
+    count = int(np.clip(ramp / max(block, STILL), 1, RAMP_STEPS))
+    return ramp * np.arange(1, count + 1) / count
+
+
+def _spaced(piece: Piece, block: float, settings: Json) -> Piece:
+    """The piece with its inner poses ``block`` mm apart at least, as far as it keeps chord_error_mm, max_turn_deg and
+    max_distance_mm: those that are nearer are left out, or moved on."""
+    even = math.cos(math.radians(settings["max_turn_deg"]))
+    points, normals, tangents = piece["points"], piece["normals"], piece["tangents"]
+    s = _places(points)
+    if len(s) < 3 or (np.diff(s) <= 0.0).any():
+        return piece
+    places, one = [0.0], 0
+    for k in range(1, len(s) - 1):
+        before, other = places[-1], k + 1
+        over, way = points[one + 1 : other] - points[one], points[other] - points[one]
+        share = np.clip(over @ way / max(float(way @ way), STILL), 0.0, 1.0)
+        missed = np.linalg.norm(over - share[:, None] * way, axis=1).max()
+        turns = min(normals[one] @ normals[other], tangents[one] @ tangents[other])
+        free = turns >= even and missed <= settings["chord_error_mm"]
+        if free and min(s[k] - before, s[other] - s[k]) < block - STILL:
+            if s[other] - before <= settings["max_distance_mm"]:
+                continue
+            if s[other] - before >= 2.0 * block:
+                places.append(float(np.clip(s[k], before + block, s[other] - block)))
+                one = k
+                continue
+        places.append(float(s[k]))
+        one = k
+    return _posed(piece, s, np.array([*places, s[-1]]))
 
 
 def _lifts(strokes: list[Piece], settings: Json, clearing: Room) -> int:
@@ -370,7 +421,7 @@ def between(a: Floats, b: Floats, shares: Floats) -> Floats:
 
 def _stroke(piece: Piece, settings: Json, entry: Ramps) -> dict[str, Any]:
     """dict(contacts, feeds, forces, rapid, contact) of one pass with its approach and retract."""
-    piece = _with_ramps(piece, entry)
+    piece = _with_ramps(piece, settings, entry)
     points = piece["points"] + settings["offset_mm"] * piece["normals"]
     angle = math.radians(settings["belt_angle_deg"])
     on = contact_frames(points, piece["normals"], piece["tangents"], angle)

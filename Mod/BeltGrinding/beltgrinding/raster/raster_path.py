@@ -523,12 +523,13 @@ def program(result: dict[str, Any], tool: str = "", base: str = "") -> Program:
     """The path as a ``programs.Program``, for ``programs.write_program``. ``tool``, ``base``: what its
     frames are, in words.
     """
-    rows = zip(result["frames"], result["feeds"].tolist(), result["forces"].tolist())
+    rows = zip(*(result[name].tolist() for name in ("feeds", "forces", "rapid", "zones")))
     made = Program("raster", "raster")
-    for (pose, feed, force), rapid in zip(rows, result["rapid"].tolist()):
+    for pose, (feed, force, rapid, zone) in zip(result["frames"], rows):
         kind = "PTP" if rapid else "LIN"
         given = None if force < 0 else force
-        made.motions.append(Motion(kind, pose, 0, "", feed, given, tool, base))
+        corner = None if zone < 0 else zone
+        made.motions.append(Motion(kind, pose, 0, "", feed, given, tool, base, zone_mm=corner))
     return made
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from ..base.kinds import Facts, Json
 from ..engine import InputError, core
 from ..job import poses
+from ..programs.force_device import of_job
 
 if TYPE_CHECKING:
     from .vary import Variable
@@ -25,7 +26,7 @@ def told(variables: Sequence[Variable], job: Json) -> Facts:
     for number, program in enumerate(job["programs"]):
         name = poses.program_name(job, number)
         try:
-            arrays = poses.program_arrays(program, name, [])
+            arrays = poses.program_arrays(program, name, [], force_device=of_job(job))
         except InputError:
             continue
         slow = ~arrays["rapid"]

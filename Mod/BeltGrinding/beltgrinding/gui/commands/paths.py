@@ -92,7 +92,8 @@ def export_program() -> None:
     if len(selected) != 1:
         raise InputError("gui.select_robot_path", "Select the robot path that is to be written.")
     title = translate("BeltGrinding", "Export robot program")
-    kinds = "KUKA KRL (*.src);;ABB RAPID (*.mod);;URScript (*.script);;CSV (*.csv)"
+    kinds = "KUKA KRL (*.src);;ABB RAPID (*.mod);;URScript (*.script);;"
+    kinds += "Fanuc TP (*.ls);;Yaskawa INFORM (*.jbi);;CSV (*.csv)"
     path = file_to_write(title, f"{selected[0].Label}.src", kinds)
     if path:
         notes = api.export_program(selected[0], path)

@@ -104,6 +104,24 @@ class BeltMachinePanel(Panel):
         belt.add("BounceTime", translate("BeltGrinding", "Bounces told within"), unit="s")
         text = translate("BeltGrinding", "Robot's stiffness (0: rigid)")
         belt.add("RobotStiffness", text, unit="N/mm")
+        devices = {
+            "none": translate("BeltGrinding", "Not at all"),
+            "analog": translate("BeltGrinding", "Analog output"),
+            "controller": translate("BeltGrinding", "Force control of the robot"),
+            "call": translate("BeltGrinding", "Subprogram"),
+            "template": translate("BeltGrinding", "Statement of your own"),
+        }
+        belt.add("ForceDevice", translate("BeltGrinding", "Programs set it by"), devices)
+        belt.add("DeviceName", translate("BeltGrinding", "Name"))
+        belt.add("DeviceOutput", translate("BeltGrinding", "Output number"))
+        belt.add("DeviceTemplate", translate("BeltGrinding", "Statement"))
+        belt.add("DeviceScale", translate("BeltGrinding", "Value per newton"), SIGNED, "1/N")
+        belt.add("DeviceOffset", translate("BeltGrinding", "Value at 0 N"), SIGNED)
+        belt.add("DeviceLeast", translate("BeltGrinding", "Least force"))
+        belt.add("DeviceGreatest", translate("BeltGrinding", "Greatest force (0: any)"))
+        belt.add("DeviceRamp", translate("BeltGrinding", "Ramp (0: at once)"), unit="N/s")
+        belt.add("DeviceDeadTime", translate("BeltGrinding", "Dead time"), unit="s")
+        belt.add("DeviceResolution", translate("BeltGrinding", "Steps of the force (0: any)"))
         self.belt, self.wheel = belt, wheel
         self.body.addWidget(kind)
         forms = (kind, wheel, self.fork, self.run, self.platen, self.frame, belt)
@@ -139,7 +157,9 @@ class BeltMachinePanel(Panel):
             "actuator": moving | {"MovingMass", "Damping", "SpeedLimit"},
         }
         force = {
-            "force": {"Force", "ForceTravel", "ForceModel"} | dynamics[self.obj.ForceModel],
+            "force": {"Force", "ForceTravel", "ForceModel", "ForceDevice"}
+            | dynamics[self.obj.ForceModel]
+            | self._device(),
             "position": {"RobotStiffness"},
         }[self.obj.Control]
         rubber = {"YoungsModulus", "ShoreA", "PoissonsRatio"}
@@ -162,6 +182,25 @@ class BeltMachinePanel(Panel):
         self.belt.show_rows({"BeltSpeed", "Belt", "BeltWear", "Control"} | force)
         self.hardness.follow()
         self.tell("")
+
+    def _device(self) -> set[str]:
+        """The rows that the force device uses."""
+        value = {"DeviceName", "DeviceScale", "DeviceOffset"}
+        used = {
+            "none": set(),
+            "analog": value | {"DeviceOutput"},
+            "controller": set(),
+            "call": value,
+            "template": {"DeviceTemplate"},
+        }[self.obj.ForceDevice]
+        bounds = {
+            "DeviceLeast",
+            "DeviceGreatest",
+            "DeviceRamp",
+            "DeviceDeadTime",
+            "DeviceResolution",
+        }
+        return used | (bounds if self.obj.ForceDevice != "none" else set())
 
     def _layers_changed(self) -> None:
         try:

@@ -317,10 +317,26 @@ class PlanPanel(RunPanel):
         obj, there = self.obj, bool(self.obj.Fingerprint)
         useful = there and obj.Better and not obj.OutOfDate
         self.apply.setEnabled(useful and not obj.Applied)
-        self.write.setEnabled(useful and any(planned.sources(self.job)))
+        why = self._why_not_written()
+        self.write.setEnabled(not why)
+        self.write.setToolTip(why)
         self.keep.setVisible(
             there and self.chart.isVisibleTo(self.form) and self.chart.chosen is not None
         )
+
+    def _why_not_written(self) -> str:
+        """Why no programs can be written; "" where they can."""
+        obj = self.obj
+        if not obj.Fingerprint or obj.OutOfDate:
+            return translate("BeltGrinding", "Plan first: there is no plan that is up to date.")
+        if not obj.Better:
+            return translate("BeltGrinding", "Nothing better was found: there is nothing to write.")
+        if not any(planned.sources(self.job)):
+            return translate(
+                "BeltGrinding",
+                "The job has no imported program. Apply the plan, and export the paths that were made here.",
+            )
+        return ""
 
     def reject(self) -> bool:
         self._commit()

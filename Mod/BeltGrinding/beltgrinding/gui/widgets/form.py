@@ -139,6 +139,9 @@ class Form(QtGui.QGroupBox):
             widget = FrameField(getattr(self.obj, name), lambda value: self._set(name, value))
         elif kind == "App::PropertyVector":
             widget = DirectionField(getattr(self.obj, name), lambda value: self._set(name, value))
+        elif kind == "App::PropertyString":
+            widget = QtGui.QLineEdit(getattr(self.obj, name))
+            widget.textChanged.connect(lambda text: self._set(name, text))
         else:
             widget = self._number(name, choices == SIGNED)
         widget.setToolTip(self.obj.getDocumentationOfProperty(name))

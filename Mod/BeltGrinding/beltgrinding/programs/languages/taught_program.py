@@ -169,6 +169,7 @@ class Taught(Numbers, TaughtPath, Dialect):
         before, moved = self.changes, False
         for node in every(nodes):
             self.tick(line, 1 + work_of(node.text) // SKIPPED)
+            self.may_set_force(node.line, node.text)
             _, called = self.may_change(node)
             moved |= bool(called) or bool(self.RELATIVE.search(node.text))
         return moved or self.changes != before

@@ -27,15 +27,18 @@ from ..program import Fact, ProgramError, bytes_of, name_of
 from ..languages.krl.data_lists import others as krl_lists
 from ..languages.rapid import modules as rapid_modules
 from ..registry import read_program
+from . import forces
 from .text import SMALL, Overlap, Shift, Source, Work
 
 if TYPE_CHECKING:
+    from ..force_device import ForceDevice
     from ..program import Motion, Program
 
 COLUMNS = ("speed_mm_s", "force_N", "dx_mm", "dy_mm", "dz_mm", "tool_dz_mm")
 MAX_STEP = 1000.0  # mm; a larger offset is a mistake
 MAX_SPEED = 10_000.0  # mm/s
 MAX_FORCE = 10_000.0  # N
+ROUNDING_N = 1e-6  # of a force that is written
 UNCHANGED = 1e-9  # mm and of a rotation's matrix; numbers that were not edited read the same
 
 Named: TypeAlias = "Mapping[int, Mapping[str, float]]"  # of motions, what is to be changed
@@ -183,14 +186,17 @@ def read_changes(path: Path | str) -> list[dict[str, Any]]:
 
 
 def patch(
-    path: Path | str, changes: Path | str | Iterable[Json], output: Path | str
+    path: Path | str,
+    changes: Path | str | Iterable[Json],
+    output: Path | str,
+    force_device: ForceDevice | None = None,
 ) -> list[dict[str, Any]]:
     """Writes the program in ``path`` to ``output`` with the changes, and nothing else changed.
 
     changes: a CSV file (``read_changes``) or a list of dicts with the same keys: ``index`` (as in
     the table of poses, from 0) or ``line`` (all motions of that line), ``speed_mm_s``, ``force_N``,
     ``dx_mm``, ``dy_mm``, ``dz_mm`` along the axes of the motion's base and ``tool_dz_mm`` along the
-    tool's z.
+    tool's z. ``force_device``: by whose statements the program sets its forces.
 
     Returns a list of dicts, one for each changed motion: index, line, and speed_mm_s, force_N,
     offset_mm as read back from what was written. Raises ProgramError, and writes nothing, where a
@@ -199,11 +205,12 @@ def patch(
     path, output = Path(path), Path(output)
     if isinstance(changes, (str, Path)):
         changes = read_changes(changes)
-    program = read_program(path)
+    program = read_program(path, force_device=force_device)
     module = _language(program.language, path.suffix.lower())
     data = path.read_bytes()
     source: Source = getattr(module, "source", Source)(data)
     work = _work(program, changes, source, module)
+    forces.edit(source, work, force_device)
     module.edit(source, work)
     try:
         written = source.result()
@@ -222,7 +229,9 @@ def patch(
         copy = Path(folder) / path.name
         values = values_beside(path)
         copy.write_bytes(written)
-        again = read_program(copy, values=values if os.path.isfile(values) else None)
+        again = read_program(
+            copy, values=values if os.path.isfile(values) else None, force_device=force_device
+        )
     report = _verify(program, again, work, source, module)
     _write(output, written, beside, path)
     return report
@@ -266,6 +275,7 @@ def _write(output: Path, written: bytes, beside: Path | None, path: Path) -> Non
 
 def _write_whole(path: Path, data: bytes) -> None:
     try:
+        path.parent.mkdir(parents=True, exist_ok=True)
         write_whole(path, data)
     except OSError as error:
         raise ProgramError.of(cannot_be_written(shown(path), error)) from None
@@ -479,7 +489,8 @@ def _verify(
         speed = a.speed_mm_s if speed is None else speed
         rounding = module.rounding_mm_s(source, a.line) if a.line in work.speeds else 0.0
         _close(i, a, "speed", speed, b.speed_mm_s, rounding, work)
-        _close(i, a, "force", a.force_N if force is None else force, b.force_N, 0.0, work)
+        rounding = ROUNDING_N if a.line in work.forces else 0.0
+        _close(i, a, "force", a.force_N if force is None else force, b.force_N, rounding, work)
         if (a.pose is None) != (b.pose is None):
             raise _other(i, a, ITS["pose"])
         shifted = bool(step.any())

@@ -126,6 +126,7 @@ class Work:
     speeds: dict[int, float] = field(default_factory=dict)  # mm/s
     forces: dict[int, float] = field(default_factory=dict)  # N
     shifts: dict[int, dict[int, Shift]] = field(default_factory=dict)  # by target: 0, 1
+    by_device: bool = False  # the forces are set by a force device
 
     def refuse(self, line: int, code: str, text: str, /, **arguments: object) -> ProgramError:
         """The ProgramError of a change in a line."""
@@ -170,7 +171,7 @@ class Work:
         return speeds.pop() if len(speeds) == 1 else None
 
     def no_force(self) -> None:
-        for line in self.forces:
+        for line in () if self.by_device else self.forces:
             raise self.refuse(
                 line,
                 "programs.patch.no_force",

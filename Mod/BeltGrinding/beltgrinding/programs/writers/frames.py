@@ -182,6 +182,20 @@ def taken_for_granted(frames: Iterable[Frame]) -> list[Fact]:
     return facts
 
 
+def frame_number(frame: Frame, language: str) -> int:
+    """The number of a frame on controllers that know them by number alone. Raises ProgramError."""
+    name = frame.name or ""
+    if not re.fullmatch(r"\d{1,2}", name, re.ASCII):
+        raise ProgramError(
+            "programs.writers.frame_number",
+            "'{name}': {language} knows its {what} by number; give the number, and set the frame on the controller",
+            name=name or frame.told,
+            language=language,
+            what=WHAT[frame.what],
+        )
+    return int(name)
+
+
 def undeclared(frame: Frame, name: str) -> Fact:
     """The Fact that a program uses a name which must exist on the controller."""
     return Fact(

@@ -9,18 +9,22 @@ from typing import TYPE_CHECKING
 from ...base.frames import to_abc
 from ...base.kinds import Floats, known
 from ..patch.text import decimal
+from ..force_device import KRL
 from ..program import ProgramError
 from .frames import check_all_set, taken_for_granted
-from .text import DEGREE_DIGITS, MM_DIGITS, SPEED_DIGITS, rounded
+from . import pressing, spline
+from .text import DIGITS, ZONE_DIGITS, Digits, rounded
 
 if TYPE_CHECKING:
     from .frames import Frame
     from .sheet import Sheet
 
-ZONE_DIGITS = 3  # of mm
 NAME = re.compile(r"[A-Za-z]\w{0,23}$", re.ASCII)
-POSE = ",".join([f"{k} %.{MM_DIGITS}f" for k in "XYZ"] + [f"{k} %.{DEGREE_DIGITS}f" for k in "ABC"])
-POSE = "{" + POSE + "}"
+# A Cartesian PTP without status and turn is reached in the posture that the robot happens to have.
+FIRST = [
+    "; The next PTP has no status and turn (S, T): they are not known here. Add them, or put a PTP with the",
+    "; joint angles of your cell's home position before it.",
+]
 VARIABLES = {"tool": "$TOOL", "base": "$BASE"}
 
 
@@ -33,19 +37,12 @@ def text(sheet: Sheet) -> bytes:
             "digits or _; the file must be called as the module",
             name=sheet.name,
         )
-    if sheet.part_in_hand:
-        raise ProgramError(
-            "programs.writers.part_in_hand",
-            "poses of a fixed tool in a held part (robhold) are not written as "
-            "{language}: the path speed would be another one; write RAPID, or the "
-            "poses of the part in the room",
-            language="KRL",
-        )
+    sheet.refuse_held("KRL")
     for frames in (sheet.bases, sheet.tools):
         check_all_set(frames, "KRL")
     left_out = [frame for frame in (sheet.bases[0], sheet.tools[0]) if frame.left_out]
     sheet.notes += taken_for_granted(left_out)
-    places = [_pose(frame) for frame in sheet.frames]
+    places = [_pose(frame, sheet.digits) for frame in sheet.frames]
     lines = ["&ACCESS RVP", "&REL 1"]
     lines += [f"&COMMENT {comment}" for comment in sheet.comments[:1]]
     lines.append(f"DEF {sheet.name} ( )")
@@ -61,10 +58,15 @@ def text(sheet: Sheet) -> bytes:
         ";ENDFOLD (INI)",
     ]
     blend = decimal(sheet.blend_mm, ZONE_DIGITS)
-    tool = base = speed = force = None
-    spline = False
+    pressed = pressing.before(sheet, KRL, ";")
+    begins = spline.blocks(sheet)
+    digits = sheet.digits.speed + 3  # of m/s
+    tool = base = speed = None
+    inside = rounded_before = False
     for k, step in enumerate(sheet.steps):
         head = []
+        if k == 0 and step.kind == "PTP":
+            head += FIRST
         if step.note:
             head.append(f"; {step.note}")
         if step.base != base:
@@ -73,9 +75,6 @@ def text(sheet: Sheet) -> bytes:
         if step.tool != tool:
             tool = step.tool
             head += _setting(sheet.tools[tool])
-        if step.force != force:
-            force = step.force
-            head.append("; force as set" if force is None else f"; force {force:g} N")
         last = k + 1 == len(sheet.steps)
         rounds = ""
         if step.kind in ("LIN", "CIRC") and not last:
@@ -84,36 +83,44 @@ def text(sheet: Sheet) -> bytes:
         if rounds not in ("", blend):
             blend = rounds
             head.append(f"$APO.CDIS={blend}")
-        wanted = speed if step.kind == "PTP" else step.speed or sheet.speed_mm_s
-        if spline and (step.kind != "SPL" or any(not row.startswith(";") for row in head)):
+        wanted = speed if step.kind == "PTP" else decimal(sheet.speed_of(step) / 1000.0, digits)
+        if inside and (
+            step.kind != "SPL" or k in begins or any(not row.startswith(";") for row in head)
+        ):
             lines.append("ENDSPLINE")
-            spline = False
+            inside = False
+        if pressed[k]:
+            plain = pressed[k].startswith(";") or not (inside or rounded_before)
+            head.append(pressed[k] if plain else known(sheet.device).triggered(pressed[k], inside))
         own = ""
-        if wanted is not None and wanted != speed and spline:
-            own = f" WITH $VEL.CP={decimal(wanted / 1000.0, SPEED_DIGITS + 3)}"
+        if wanted is not None and wanted != speed and inside:
+            own = f" WITH $VEL.CP={wanted}"
         elif wanted is not None and wanted != speed:
             speed = wanted
-            head.append(f"$VEL.CP={decimal(speed / 1000.0, SPEED_DIGITS + 3)}")
+            head.append(f"$VEL.CP={wanted}")
         lines += head
-        if step.kind == "SPL" and not spline:
+        if step.kind == "SPL" and not inside:
             lines.append("SPLINE")
-            spline = True
+            inside = True
+        rounded_before = bool(rounds)
         target = places[step.pose]
         if step.kind == "CIRC":
             target = f"{places[known(step.aux)]},{target}"
         lines.append(f"{step.kind} {target}{own}{' C_DIS' if rounds else ''}")
-    lines += ["ENDSPLINE"] if spline else []
+    lines += ["ENDSPLINE"] if inside else []
     lines += ["END", ""]
     return "\r\n".join(lines).encode("ascii")
 
 
-def _pose(frame: Floats) -> str:
-    place = rounded(frame[:3, 3], MM_DIGITS).tolist()
-    return POSE % (*place, *rounded(to_abc(frame), DEGREE_DIGITS).tolist())
+def _pose(frame: Floats, digits: Digits) -> str:
+    names = [f"{k} %.{digits.mm}f" for k in "XYZ"] + [f"{k} %.{digits.degree}f" for k in "ABC"]
+    place = rounded(frame[:3, 3], digits.mm).tolist()
+    turn = rounded(to_abc(frame), digits.degree).tolist()
+    return "{" + ",".join(names) % (*place, *turn) + "}"
 
 
 def _frame(frame: Floats) -> str:
-    return "{FRAME: " + _pose(frame)[1:]
+    return "{FRAME: " + _pose(frame, DIGITS["fine"])[1:]
 
 
 def _asked_for(frame: Frame) -> list[str]:

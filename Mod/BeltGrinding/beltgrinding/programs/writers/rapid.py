@@ -9,19 +9,20 @@ from typing import TYPE_CHECKING
 from ...base.frames import to_quaternions
 from ...base.kinds import Floats, known
 from ..patch.text import decimal
+from ..force_device import RAPID
 from ..program import ProgramError
 from ..languages.rapid.data import SPEEDS, ZONES, zone
 from .frames import undeclared
-from .text import MM_DIGITS, SPEED_DIGITS, UNIT_DIGITS, identifier, rounded, rounded_quaternions
+from . import pressing
+from .text import DIGITS, ZONE_DIGITS, Digits, identifier, rounded, rounded_quaternions
 
 if TYPE_CHECKING:
     from .frames import Frame
-    from .sheet import Sheet
+    from ..force_device import ForceDevice
+    from .sheet import Sheet, Step
 
 MOST = 32  # characters of an identifier
-ZONE_DIGITS = 3  # of mm
-PLACE = f"[%.{MM_DIGITS}f,%.{MM_DIGITS}f,%.{MM_DIGITS}f]"
-TURN = "[" + ",".join([f"%.{UNIT_DIGITS}f"] * 4) + "]"
+FORCE_DIGITS = 4  # of N along an axis
 AXES = "[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]"
 NAME = re.compile(r"[A-Za-z]\w{0,31}", re.ASCII)
 TYPES = {"tool": "tooldata", "base": "wobjdata"}
@@ -29,6 +30,7 @@ DECLARED = {"tool": "tool_", "base": "wobj_"}
 # Of frames that nobody has named: the controller has none of these names, and refuses the program.
 LEFT_OUT = {"tool": "tBelt", "base": "wPart"}
 MOVES = {"PTP": "MoveJ", "LIN": "MoveL", "SPL": "MoveL", "CIRC": "MoveC"}
+THRESHOLD = 50  # percent of the force, at which FCPress1LStart takes the contact for found
 
 
 def text(sheet: Sheet) -> bytes:
@@ -51,32 +53,58 @@ def text(sheet: Sheet) -> bytes:
     if any(step.kind == "SPL" for step in sheet.steps):
         lines.append("    ! RAPID has no splines: their points are joined by lines.")
     places = [
-        f"[{PLACE % tuple(p)},{TURN % tuple(q)},{AXES}]"
+        f"{_target(p, q, sheet.digits)[:-1]},{AXES}]"
         for p, q in zip(
-            rounded(sheet.positions, MM_DIGITS).tolist(),
-            rounded_quaternions(sheet.quaternions).tolist(),
+            rounded(sheet.positions, sheet.digits.mm).tolist(),
+            rounded_quaternions(sheet.quaternions, sheet.digits.unit).tolist(),
         )
     ]
-    blend, force = _blend(sheet.blend_mm), None
+    blend = _blend(sheet.blend_mm)
+    device = sheet.device
+    by_controller = device is not None and device.kind == "controller"
+    pressed = pressing.runs(sheet) if by_controller else [""] * len(sheet.steps)
+    heads = [""] * len(sheet.steps) if by_controller else pressing.before(sheet, RAPID, "!")
     for k, step in enumerate(sheet.steps):
         if step.note:
             lines.append(f"    ! {step.note}")
-        if step.force != force:
-            force = step.force
-            lines.append("    ! force as set" if force is None else f"    ! force {force:g} N")
-        speed = step.speed or (sheet.ptp_speed_mm_s if step.kind == "PTP" else sheet.speed_mm_s)
+        if heads[k]:
+            lines.append(
+                f"    {heads[k]}" + ("" if heads[k][0] == "!" or heads[k][-1] == ";" else ";")
+            )
+        speed = sheet.speed_of(step)
+        if step.kind == "PTP":
+            speed = step.speed or sheet.ptp_speed_mm_s
         target = places[step.pose]
         if step.kind == "CIRC":
             target = f"{places[known(step.aux)]},{target}"
         rounds = blend if step.zone is None else _zone(step.zone)
         if k + 1 == len(sheet.steps):
             rounds = "fine"
+        move, force = MOVES[step.kind], ""
+        if pressed[k] == "start":
+            move, force = "FCPress1LStart", _first_press(
+                known(device), step, sheet.frames[step.pose]
+            )
+        elif pressed[k] == "press":
+            move = "FCPressC" if step.kind == "CIRC" else "FCPressL"
+            force = f",{decimal(known(step.force), 3)}"
+        elif pressed[k] == "end":
+            move = "FCPressEnd"
+        where = "" if pressed[k] == "end" else f",{rounds}"
         lines.append(
-            f"    {MOVES[step.kind]} {target},{_speed(speed)},{rounds},"
+            f"    {move} {target},{_speed(speed, sheet.digits.speed)}{force}{where},"
             f"{names['tool'][step.tool]}\\WObj:={names['base'][step.base]};"
         )
     lines += ["  ENDPROC", "ENDMODULE", ""]
     return "\r\n".join(lines).encode("ascii")
+
+
+def _first_press(device: ForceDevice, step: Step, frame: Floats) -> str:
+    """Of FCPress1LStart: the force along the tool's axes, the share of it that tells of contact, the frame."""
+    along = rounded(known(step.force) * pressing.along(device, frame), FORCE_DIGITS).tolist()
+    axes = zip("xyz", along)
+    forces = "".join(f"\\F{axis}:={decimal(one, FORCE_DIGITS)}" for axis, one in axes if one)
+    return f"{forces},{THRESHOLD}\\ForceFrameRef:=FC_REFFRAME_TOOL"
 
 
 def _name(frame: Frame, number: int) -> str:
@@ -129,15 +157,23 @@ def _flag(value: bool) -> str:
 
 
 def _pose(frame: Floats) -> str:
-    place = rounded(frame[:3, 3], MM_DIGITS).tolist()
-    turn = rounded_quaternions(to_quaternions(frame[None, :3, :3]))[0].tolist()
-    return f"[{PLACE % tuple(place)},{TURN % tuple(turn)}]"
+    digits = DIGITS["fine"]
+    place = rounded(frame[:3, 3], digits.mm).tolist()
+    turn = rounded_quaternions(to_quaternions(frame[None, :3, :3]), digits.unit)[0].tolist()
+    return _target(place, turn, digits)
 
 
-def _speed(speed: float) -> str:
-    if speed in SPEEDS:
-        return f"v{speed:.0f}"
-    return f"[{decimal(speed, SPEED_DIGITS)},500,5000,1000]"
+def _target(place: list[float], turn: list[float], digits: Digits) -> str:
+    at = ",".join(f"{one:.{digits.mm}f}" for one in place)
+    quaternion = ",".join(f"{one:.{digits.unit}f}" for one in turn)
+    return f"[[{at}],[{quaternion}]]"
+
+
+def _speed(speed: float, digits: int) -> str:
+    number = decimal(speed, digits)
+    if float(number) in SPEEDS:
+        return f"v{float(number):.0f}"
+    return f"[{number},500,5000,1000]"
 
 
 def _blend(most: float) -> str:

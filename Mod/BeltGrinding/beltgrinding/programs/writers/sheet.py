@@ -4,9 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from typing import Optional
+
+import numpy as np
+
 from ...base.kinds import Floats
-from ..program import Fact
+from ..force_device import ForceDevice
+from ..program import Fact, ProgramError
 from .frames import Frame
+from .text import DIGITS, Digits
 
 
 @dataclass
@@ -40,4 +46,47 @@ class Sheet:
     ptp_speed_mm_s: float
     blend_mm: float
     part_in_hand: bool
+    digits: Digits = DIGITS["fine"]
+    form: str = (
+        ""  # "": corners as the motions say; "spline" or "zones": as ``write_program`` takes it
+    )
+    device: Optional[ForceDevice] = None  # that the program sets its forces by
     notes: list[Fact] = field(default_factory=list)  # what the program takes for granted
+
+    def ways(self) -> tuple[Floats, Floats]:
+        """(n,) mm from the step before, (n,) mm to the one behind; 0 where there is none."""
+        places = self.positions[[step.pose for step in self.steps]]
+        lengths = np.linalg.norm(np.diff(places, axis=0), axis=1)
+        return np.append(0.0, lengths), np.append(lengths, 0.0)
+
+    def refuse_held(self, language: str) -> None:
+        """Raises ProgramError where the poses are those of a fixed tool in the part that the robot holds."""
+        if self.part_in_hand:
+            raise ProgramError(
+                "programs.writers.part_in_hand",
+                "poses of a fixed tool in a held part (robhold) are not written as "
+                "{language}: the path speed would be another one; write RAPID, or the "
+                "poses of the part in the room",
+                language=language,
+            )
+
+    def posture(self) -> Fact:
+        """What a language takes for granted that writes the arm's configuration with each pose."""
+        return Fact(
+            "programs.writers.posture",
+            "the arm's configuration at the positions is not known here: they have the first of the language; set it "
+            "at the first position, and check the others on the controller's simulator",
+        )
+
+    def frames_of(self) -> list[tuple[int, int]]:
+        """(base, tool) of each pose, as rows of ``bases`` and ``tools``."""
+        found = [(0, 0)] * len(self.frames)
+        for step in self.steps:
+            for pose in (step.pose, step.aux):
+                if pose is not None:
+                    found[pose] = step.base, step.tool
+        return found
+
+    def speed_of(self, step: Step) -> float:
+        """mm/s of a path motion, never so low that its digits make it none."""
+        return max(step.speed or self.speed_mm_s, 10.0**-self.digits.speed)

@@ -9,15 +9,16 @@ import numpy as np
 from ...base.frames import to_quaternions
 from ...base.kinds import Floats, known
 from ..patch.text import decimal
+from ..force_device import URSCRIPT
 from ..program import ProgramError
 from .frames import WHAT, check_all_set, taken_for_granted, undeclared
-from .text import SPEED_DIGITS, UNIT_DIGITS, identifier, rounded
+from . import pressing
+from .text import DIGITS, identifier, rounded
 
 if TYPE_CHECKING:
     from .frames import Frame
     from .sheet import Sheet
 
-POSE = "p[" + ", ".join([f"%.{UNIT_DIGITS}f"] * 6) + "]"
 ACCELERATION = 1.2  # m/s2, the manual's default
 JOINT_ACCELERATION = 1.4  # rad/s2, likewise
 JOINT_SPEED = 1.05  # rad/s, likewise
@@ -27,18 +28,13 @@ MOST = 64  # characters of a name
 
 def text(sheet: Sheet) -> bytes:
     """The bytes of a .script file. The poses are in one base (``one_base``)."""
-    if sheet.part_in_hand:
-        raise ProgramError(
-            "programs.writers.part_in_hand",
-            "poses of a fixed tool in a held part (robhold) are not written as "
-            "{language}: the path speed would be another one; write RAPID, or the "
-            "poses of the part in the room",
-            language="URScript",
-        )
+    sheet.refuse_held("URScript")
     check_all_set(sheet.tools, "URScript")
     for one in (*sheet.bases, *sheet.tools):
         _check_numbers(one)
     base, first = sheet.bases[0], sheet.tools[0]
+    digits = sheet.digits.unit
+    pose = _format(digits)
     lines = [f"def {identifier(sheet.name, MOST)}():"]
     lines += [f"  # {comment}" for comment in sheet.comments]
     if base.left_out:
@@ -60,11 +56,16 @@ def text(sheet: Sheet) -> bytes:
     if any(step.kind == "SPL" for step in sheet.steps):
         lines.append("  # URScript has no splines: their points are joined by lines.")
     places = [
-        f"pose_trans(ref_frame, {POSE % tuple(row)})" for row in _vectors(sheet.frames).tolist()
+        f"pose_trans(ref_frame, {pose % tuple(row)})"
+        for row in _vectors(sheet.frames, digits).tolist()
     ]
+    by_controller = sheet.device is not None and sheet.device.kind == "controller"
+    pressed = (
+        pressing.force_mode(sheet, pose) if by_controller else pressing.before(sheet, URSCRIPT, "#")
+    )
     blends = _blends(sheet)
-    tool = force = None
-    for step, blend in zip(sheet.steps, blends):
+    tool = None
+    for step, blend, head in zip(sheet.steps, blends, pressed):
         if step.note:
             lines.append(f"  # {step.note}")
         if step.tool != tool:
@@ -72,10 +73,8 @@ def text(sheet: Sheet) -> bytes:
             if not sheet.tools[tool].left_out:
                 lines.append(f"  # tool {sheet.tools[tool].told}")
                 lines.append(f"  set_tcp({_one(known(sheet.tools[tool].pose))})")
-        if step.force != force:
-            force = step.force
-            lines.append("  # force as set" if force is None else f"  # force {force:g} N")
-        speed = decimal((step.speed or sheet.speed_mm_s) / 1000.0, SPEED_DIGITS + 3, 1)
+        lines += [f"  {head}"] if head else []
+        speed = decimal(sheet.speed_of(step) / 1000.0, sheet.digits.speed + 3, 1)
         place = places[step.pose]
         if step.kind == "PTP":
             tail = decimal(blend / 1000.0, 6, 1) if step.zone else "0.0"
@@ -87,6 +86,7 @@ def text(sheet: Sheet) -> bytes:
             lines.append(f"  movec({places[known(step.aux)]}, {place}, {tail}, mode=0)")
         else:
             lines.append(f"  movel({place}, {tail})")
+    lines += [f"  {one}" for one in pressed[len(sheet.steps) :] if one]
     lines += ["end", ""]
     return "\n".join(lines).encode("ascii")
 
@@ -101,11 +101,16 @@ def _check_numbers(frame: Frame) -> None:
         )
 
 
+def _format(digits: int) -> str:
+    return "p[" + ", ".join([f"%.{digits}f"] * 6) + "]"
+
+
 def _one(frame: Floats) -> str:
-    return POSE % tuple(_vectors(frame[None])[0])
+    digits = DIGITS["fine"].unit
+    return _format(digits) % tuple(_vectors(frame[None], digits)[0])
 
 
-def _vectors(frames: Floats) -> Floats:
+def _vectors(frames: Floats, digits: int) -> Floats:
     """(n, 6): metres and rotation vectors (axis times angle, at most pi)."""
     quaternions = to_quaternions(frames[:, :3, :3])
     sines = np.linalg.norm(quaternions[:, 1:], axis=1)
@@ -113,18 +118,16 @@ def _vectors(frames: Floats) -> Floats:
     factors = 2.0 * np.arctan2(sines, quaternions[:, 0]) / np.where(small, 1.0, sines)
     factors = np.where(small, 2.0, factors)
     rows = np.hstack([frames[:, :3, 3] / 1000.0, quaternions[:, 1:] * factors[:, None]])
-    found = rounded(rows, UNIT_DIGITS)
+    found = rounded(rows, digits)
     # A rounded half turn that is more than half a turn would be one about the opposite axis.
     over = np.linalg.norm(found[:, 3:], axis=1) > np.pi
-    scale = 10.0**UNIT_DIGITS
+    scale = 10.0**digits
     found[over, 3:] = np.trunc(rows[over, 3:] * scale) / scale + 0.0
     return found
 
 
 def _blends(sheet: Sheet) -> list[float]:
     """mm for each step: never more than a share of the ways before and behind."""
-    places = sheet.positions[[step.pose for step in sheet.steps]]
-    ways = np.linalg.norm(np.diff(places, axis=0), axis=1)
-    before, behind = np.append(0.0, ways), np.append(ways, 0.0)
+    before, behind = sheet.ways()
     wanted = [sheet.blend_mm if step.zone is None else step.zone for step in sheet.steps]
     return np.minimum(wanted, BLEND_SHARE * np.minimum(before, behind)).tolist()

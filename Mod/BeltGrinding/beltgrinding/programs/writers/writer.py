@@ -1,4 +1,4 @@
-"""Writes new programs: KUKA KRL, ABB RAPID, URScript, CSV. The inverse of the readers.
+"""Writes new programs: KUKA KRL, ABB RAPID, URScript, Fanuc TP, Yaskawa INFORM, CSV. The inverse of the readers.
 
 Numbers have so many decimals that reading gives the poses within 1e-6 mm and 1e-6 degrees: 6 of mm
 and 7 of degrees in KRL, 9 of a quaternion, of metres and of radians. The controllers read them all;
@@ -17,18 +17,25 @@ import numpy as np
 
 from ...base.kinds import Floats, Json
 from .. import one_frame
+from ..force_device import Given as Device, device_of
 from ..problems import ordered
 from ..program import Motion, Program, ProgramError
 from . import one_base
 from .frames import Frames, checked
+from .pressing import not_set, settle
+from .read_again import check_forces
 from .sheet import Sheet, Step
-from .text import printable
+from .spline import FORMS, fit_zones
+from .text import DIGITS, printable
 from .turned import resolved
 
 if TYPE_CHECKING:
     from ..program import Fact
     from .frames import Given
 
+WRITTEN_BY = (
+    "written by BeltGrinding"  # in the head: such a file may be written anew (cli/outputs.py)
+)
 IN_HAND = ("held by the robot", "fixed in the room")  # as the RAPID reader says it
 
 Written: TypeAlias = "Program | Iterable[Motion] | Iterable[Json]"  # Json: passes
@@ -47,10 +54,13 @@ def write_program(
     ptp_speed_mm_s: float = 200.0,
     blend_mm: float = 1.0,
     part_in_hand: bool | None = None,
+    form: str = "",
+    digits: str = "fine",
+    force_device: Device = None,
 ) -> list[Fact]:
     """Writes a robot program to ``path``, whole or not at all. Raises ProgramError.
 
-    language: .src, .mod, .script, .csv or None, the suffix of ``path``.
+    language: .src, .mod, .script, .ls, .jbi, .csv or None, the suffix of ``path``.
     program: a Program; a list of Motion; or a list of passes, dicts of ``poses`` ((n, 4, 4),
     base_from_tcp in mm), ``feed_mm_s`` and, optionally, ``force_N``: the first pose of a pass is
     reached by PTP, the others by LIN.
@@ -66,6 +76,13 @@ def write_program(
     blend_mm: how far from a pose whose motion gives no zone the robot may round the corner; 0: it stops.
     part_in_hand: the poses are those of a fixed tool in the part that the robot holds (RAPID's
     robhold); None: what the words of the program's frames tell.
+
+    form: how a controller follows the passes. "": corners as the motions say. "spline": KRL's passes are spline
+    blocks, in which a sharp bend stops the robot; in other languages as "zones": corners are rounded by half the
+    shorter neighbouring way at most.
+    digits: "fine", and a CSV's: poses read back within 1e-6 mm and 1e-6 degrees; "robot": 0.001 mm, 0.001 degrees, 0.1 mm/s.
+    force_device: what sets the pressing force (``force_device.device_of``), for path motions; None: comments tell it.
+    What is written is read again then, and refused unless each motion has its force.
 
     A motion without a pose (a joint target, a gap) becomes a comment, and the next pose is reached
     by PTP: nothing is ground on a way that is not known.
@@ -108,16 +125,27 @@ def write_program(
     if isinstance(program, Program):
         head.append(f"from {program.file} ({program.language})")
         head += [f"not followed there: {problem}" for problem in ordered(program.problems)[:20]]
+    head.insert(1, WRITTEN_BY)  # the first may be the title
     head += [str(fact) for _, _, fact in left_out]
     head += one_base.comments(joined)
     sheet.comments = [printable(text) for text in head]
     sheet.speed_mm_s, sheet.ptp_speed_mm_s = float(speed_mm_s), float(ptp_speed_mm_s)
     sheet.blend_mm, sheet.part_in_hand = float(blend_mm), bool(part_in_hand)
+    if form not in ("", *FORMS) or digits not in DIGITS:
+        raise ValueError(f"form {form!r}, digits {digits!r}")
+    pressed: list[Fact] = []
+    if suffix != ".csv":  # which no controller follows
+        sheet.form, sheet.digits, sheet.device = form, DIGITS[digits], device_of(force_device)
+        fit_zones(sheet)
+        pressed = [*settle(sheet), *not_set(sheet)]
     data = writer(sheet)
+    if sheet.device is not None:
+        check_forces(sheet, data, path.stem + suffix)
     from ...base.files import write_whole
 
+    path.parent.mkdir(parents=True, exist_ok=True)
     write_whole(path, data)
-    return [*sheet.notes, *turns, *joined, *given, *(fact for _, _, fact in left_out)]
+    return [*pressed, *sheet.notes, *turns, *joined, *given, *(fact for _, _, fact in left_out)]
 
 
 def _writer(suffix: str, path: Path) -> Callable[[Sheet], bytes]:
@@ -128,12 +156,16 @@ def _writer(suffix: str, path: Path) -> Callable[[Sheet], bytes]:
         from .rapid import text
     elif suffix == ".script":
         from .urscript import text
+    elif suffix == ".ls":
+        from .fanuc import text
+    elif suffix == ".jbi":
+        from .inform import text
     elif suffix == ".csv":
         from .csv import text
     else:
         raise ProgramError(
             "programs.writers.suffix",
-            "{file}: no program is written as '{suffix}'; known: .src, .mod, .script, .csv",
+            "{file}: no program is written as '{suffix}'; known: .src, .mod, .script, .ls, .jbi, .csv",
             file=str(path),
             suffix=suffix,
         )

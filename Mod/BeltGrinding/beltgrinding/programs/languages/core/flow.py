@@ -13,6 +13,7 @@ from typing import Any
 
 from ....base.kinds import known
 from ....base.stopping import check
+from ... import force_device
 from ...program import MAX_UNROLLED, SKIPPED, Fact, Program, ProgramError, Reason, Unknown, work_of
 from .values import Evaluated
 from .expression import number, truth
@@ -110,6 +111,8 @@ class Flow(Working):
     changes = 0  # of data, as far as assign() counts them
     doubt = False  # the loop may have been left
     unreached = False  # an endless loop is behind
+    device_N: float | None = None  # by the program's force device; None: the program has set none
+    pressed = 0  # so many motions have their force
 
     def cost(self, node: Node) -> int:
         """Units of work that a statement takes."""
@@ -136,10 +139,62 @@ class Flow(Working):
             try:
                 if node.word in self.BLOCKS and node.body is not None:
                     getattr(self, self.BLOCKS[node.word])(node)
-                else:
+                elif not self.sets_force(node.line, node.text):
                     self.statement(node)
             except Jump as jump:
                 at = self.jumped(jump, nodes, at)
+            finally:
+                self.press()
+
+    def sets_force(self, line: int, text: str) -> bool:
+        """Whether a statement is the force device's (``force_device.reading``); the motions after it have its force."""
+        operand = self.device_operand(text)
+        if operand is None:
+            return False
+        self.press()
+        self.device_N = None
+        try:
+            literal = force_device.NUMBER.fullmatch(operand)
+            value = float(operand) if literal else number(self.value(operand))
+            self.device_N = known(force_device.in_use()).newton(value)
+        except Unknown as unknown:
+            self.program.need(unknown)
+            self.problem(
+                line,
+                "programs.force_unknown",
+                "the force of {what} is not known: {reason}; that of the job is taken",
+                what=text[:40],
+                reason=unknown.fact,
+            )
+        return True
+
+    def may_set_force(self, line: int, text: str) -> None:
+        """Makes the force unknown where a statement that may run or not is the force device's."""
+        if self.device_operand(text) is not None:
+            self.press()
+            self.device_N = None
+            told = Fact(
+                "programs.force_at_run_time",
+                "whether {what} runs is decided at run time; the motions after it are read without it",
+                what=text[:40],
+            )
+            said: set[tuple[str, int]] = vars(self).setdefault("forces_said", set())
+            if (self.file, line) not in said:
+                said.add((self.file, line))
+                self.problem(line, told)
+
+    def device_operand(self, text: str) -> str | None:
+        device = force_device.in_use()
+        return None if device is None else device.operand(self.program.language, text)
+
+    def press(self) -> None:
+        """Gives the motions since the last call the device's force, those of an arc that is not complete too."""
+        motions = self.program.motions
+        if self.device_N is not None:
+            for motion in (*motions[self.pressed :], *getattr(self, "arc", ())):
+                if motion.force_N is None and motion.kind not in ("PTP", "GAP"):
+                    motion.force_N = self.device_N
+        self.pressed = len(motions)
 
     def jumped(self, jump: Jump, nodes: Sequence[Node], at: int) -> int:
         """Where a block goes on after a jump. Raises it on where its label is in a block around."""
@@ -166,6 +221,7 @@ class Flow(Working):
             self.tick(line, 1 + work_of(node.text) // SKIPPED)
             stack += node.body or []
             self.doubt |= self.leaves(node)
+            self.may_set_force(node.line, node.text)
             moved, called = self.may_change(node)
             for name in called.keys() - entered:
                 entered.add(name)

@@ -69,6 +69,7 @@ class Parts:
     touch: Callable[..., None]
     touch_bas: Callable[..., None]
     may_set: Callable[..., Why]
+    may_set_force: Callable[..., None]
     may_leave: Callable[..., None]
     may_jump: Callable[..., None]
     forget: Callable[..., None]

@@ -104,6 +104,7 @@ class Touched(Parts):
 
     def touch(self, line: int, text: str, word: str, told: Why) -> None:
         """Makes unknown what a statement may change; ``told``: why, as a Reason takes it."""
+        self.may_set_force(line, text)
         if MOTION.match(text):
             self.here = None
             self.lose_calls(line, text, told)

@@ -89,10 +89,12 @@ class Control(Jumping, MotionRunner):
 
     def short_if(self, node: Node) -> None:
         """IF with one statement and no ENDIF."""
+        rest = ""
         try:
             condition, rest = first(node.text)
             known = truth(condition(self))
         except Unknown as unknown:
+            self.may_set_force(node.line, rest)
             message = Fact(
                 "programs.rapid.motion_at_run_time",
                 "{word} is decided at run time ({reason}); its motion is left out",
@@ -104,7 +106,8 @@ class Control(Jumping, MotionRunner):
         word = re.match(r"\w+", rest)
         self.tick(node.line, work_of(rest))
         if known and word:
-            self.statement(Node(node.line, word.group().lower(), rest))
+            if not self.sets_force(node.line, rest):
+                self.statement(Node(node.line, word.group().lower(), rest))
         elif not word:
             self.problem(
                 node.line,

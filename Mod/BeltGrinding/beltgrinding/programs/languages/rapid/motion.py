@@ -13,6 +13,7 @@ import numpy as np
 
 from ....base.kinds import Json
 from ....base.frames import from_quaternions
+from ... import force_device
 from ...program import Fact, Motion, Program, Reason, Unknown, joint_angles
 from ..core.values import Evaluated
 from . import data
@@ -37,6 +38,7 @@ MOVES = """
     MoveLSync MoveCSync TriggJ TriggL TriggC TriggJIOs TriggLIOs SearchL SearchC ArcLStart ArcL ArcLEnd ArcCStart
     ArcC ArcCEnd PaintL PaintC DispL DispC FCPress1LStart FCPressL FCPressC FCPressEnd
 """.split()
+PRESSING = ("fx", "fy", "fz")  # of FCPress1LStart
 KINDS = {"absj": "PTP", "j": "PTP", "l": "LIN", "c": "CIRC", "": "LIN"}
 
 
@@ -128,6 +130,9 @@ class MotionRunner(Frames):
             if not search and to_tool > 1:
                 zone = self.zone(line, row[speed_at + to_tool - 1], options)
             pressed = number(row[speed_at + 1](self)) if force else None
+            if force is False and getattr(force_device.in_use(), "kind", "") == "controller":
+                along = [number(options[name](self)) for name in PRESSING if options.get(name)]
+                pressed = math.hypot(*along)
             for k, pose in enumerate(poses):
                 motion = Motion(kind, None, line, self.file, speed, aux=k < count - 1)
                 motion.zone_mm, motion.force_N = zone, pressed

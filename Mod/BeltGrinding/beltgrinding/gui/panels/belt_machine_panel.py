@@ -185,8 +185,8 @@ class BeltMachinePanel(Panel):
 
     def _device(self) -> set[str]:
         """The rows that the force device uses."""
-        value = {"DeviceName", "DeviceScale", "DeviceOffset"}
-        used = {
+        value: set[str] = {"DeviceName", "DeviceScale", "DeviceOffset"}
+        used: dict[str, set[str]] = {
             "none": set(),
             "analog": value | {"DeviceOutput"},
             "controller": set(),

@@ -22,7 +22,7 @@ def test_a_job_under_its_controllers_time():
     assert job["simulation"]["timing"] == "constant_feed"  # the job given stays
     assert simulation["timing"] == "trapezoidal"
     assert simulation["path_acceleration_mm_s2"] == 2300.0  # $ACC.CP 2.3 m/s2
-    assert simulation["angular_acceleration_deg_s2"] == 200.0
+    assert simulation["angular_acceleration_deg_s2"] == 500.0
     assert simulation["max_travel_mm"] == SIMULATION["max_travel_mm"]["default"]
     found = robot_time.limits(job)
     assert found.cycle_s == 0.012 and found.least_block_s == pytest.approx(0.036)

@@ -161,7 +161,7 @@ def plan(
     )
 
 
-def in_time(job: Job | Json, settings: Json) -> tuple[Json, Json]:
+def in_time(job: Job | Json, settings: dict[str, Any]) -> tuple[Json, dict[str, Any]]:
     """(a validated job under the time that ``settings``, validated, plan in, those with the acceleration that the
     robot has where they give none). Few levels of feed jump: no acceleration is asked of them."""
     data = records.plain(job)

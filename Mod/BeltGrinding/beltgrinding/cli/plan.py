@@ -125,6 +125,10 @@ def text(summary, from_file, before=True):
             f"at {summary['beyond_limits']['after']} places feed or force change faster than they may: the program's own "
             "steps, or motions that stay"
         )
+    if summary["timing"] == "job":
+        lines.append(
+            f"planned by the job's own time law ({summary['time_law']}), not for the time that the robot takes"
+        )
     feeds = summary["feed_mm_s"]
     lines.append(
         f"feeds {feeds['least']:.3g} to {feeds['greatest']:.3g} mm/s; {summary['changed']} of "

@@ -402,8 +402,8 @@ def test_names_and_languages(tmp_path):
     write_program(tmp_path / "1st part.mod", None, motions)
     assert (tmp_path / "1st part.mod").read_text().startswith("MODULE p_1st_part\n")
     assert len(identifier("x" * 90, 32)) == 32
-    with pytest.raises(ProgramError, match="no program is written as '.ls'"):
-        write_program(tmp_path / "p.ls", None, motions)
+    with pytest.raises(ProgramError, match="no program is written as '.as'"):
+        write_program(tmp_path / "p.as", None, motions)
     write_program(tmp_path / "p.txt", ".src", motions)
     assert "DEF p ( )" in (tmp_path / "p.txt").read_text()
 

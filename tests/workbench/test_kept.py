@@ -203,6 +203,8 @@ VALUES = {
     "belt_machine.frame.length_mm": lambda _: 60.0,
     "belt_machine.compliance.surrogate_file": lambda folder: str(folder / "none.npz"),
     "belt_machine.wheel.crown_radius_mm": lambda _: 60.0,
+    "belt_machine.force_device.name": lambda _: "aoForce",
+    "belt_machine.force_device.template": lambda _: "FORCE({newton:.1f})",
     "programs.0.poses.0.qw": lambda _: 0.99874922,
     "programs.0.poses.0.qx": lambda _: 0.05,
     "programs.0.poses.0.qy": lambda _: 0.05,

@@ -82,6 +82,12 @@ class Messages:
             else:
                 self._print("cli.warning", "warning", [one])
 
+    def print_written(self, facts):
+        """What ``write_program`` tells: forces that the program does not set as they are planned are warnings."""
+        forces = [one for one in facts if one.code.startswith("programs.writers.force_")]
+        self.print_warnings(forces)
+        self.print_notes([one for one in facts if one not in forces])
+
     def print_notes(self, notes):
         """Facts that are no warnings, a line each."""
         self._print("cli.note", "note", notes)

@@ -278,7 +278,7 @@ def _program(arguments):
             write_whole(Path(arguments.output), table.poses_csv(program).encode())
     except OSError as error:
         raise cannot_be_written(arguments.output, error) from None
-    arguments.messages.print_notes(notes)
+    arguments.messages.print_written(notes)
     found = table.summary(program, arguments.messages.everything)
     print(json.dumps(found, indent=2, allow_nan=False))
     _tell_read(arguments, program, read, said)
@@ -382,7 +382,7 @@ def _write_raster(arguments, file, job, found):
     except OSError as error:
         raise cannot_be_written(file, error) from None
     arguments.messages.print_warnings(found["warnings"])
-    arguments.messages.print_notes(notes)
+    arguments.messages.print_written(notes)
 
 
 def _reach(arguments):

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..base.kinds import Context, Json, known
+from ..base.kinds import Context, Floats, Json, known
 from ..engine import InputError, core
 from ..inspection import verdict as verdicts
 from ..job import poses
@@ -57,11 +57,13 @@ def grind(
     settings: Json | None = None,
     context: Context = None,
     told: Callable[[dict[str, Any]], object] | None = None,
+    zones: Callable[[Json], Floats] | None = None,
 ) -> Ground:
     """Lays passes on the faces of a validated job, whose own programs do not matter, and plans their feeds, and forces
     if the machine keeps a force: down to ``GENTLER`` of the job's where ``force_min_N`` is not given, never up unless
     ``force_max_N`` is. ``raster_settings``: where the search begins; ``settings``: of the plan; ``told(dict)``: as
-    ``tried``, then as rounds of the plan.
+    ``tried``, then as rounds of the plan; ``zones(path)``: (poses,) mm, -1: the job's default, as the program's file will
+    have them; without it those of the raster.
 
     Returns a ``Ground``. Raises InputError, Cancelled.
     """
@@ -81,7 +83,7 @@ def grind(
         begun = len(tried) / TRIES * (1.0 - FINAL)
         part = context.part(begun, begun + (1.0 - FINAL) / TRIES)
         try:
-            one = _try(data, wanted, settings, part)
+            one = _try(data, wanted, settings, part, zones)
         except InputError:
             if best is None:
                 raise
@@ -133,8 +135,16 @@ def _with_path(data: Json, laid: Json) -> dict[str, Any]:
     }
 
 
-def _try(data: Json, wanted: Json, settings: Json, context: core.RunContext) -> dict[str, Any]:
+def _try(
+    data: Json,
+    wanted: Json,
+    settings: Json,
+    context: core.RunContext,
+    zones: Callable[[Json], Floats] | None,
+) -> dict[str, Any]:
     laid = raster_path.raster(data, wanted, context.part(0.0, 0.2))
+    if zones is not None:
+        laid["zones"] = zones(laid)
     # The way is found once: other passes go the same.
     wanted = {**wanted, "along": laid["along"], "direction": list(laid["direction"])}
     tried = rounds.settled(_with_path(data, laid), context)

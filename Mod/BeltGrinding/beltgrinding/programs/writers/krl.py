@@ -13,7 +13,7 @@ from ..force_device import KRL
 from ..program import ProgramError
 from .frames import check_all_set, taken_for_granted
 from . import pressing, spline
-from .text import ZONE_DIGITS, Digits, rounded
+from .text import DIGITS, ZONE_DIGITS, Digits, rounded
 
 if TYPE_CHECKING:
     from .frames import Frame
@@ -48,7 +48,7 @@ def text(sheet: Sheet) -> bytes:
     lines.append(f"DEF {sheet.name} ( )")
     lines += [f"; {comment}" for comment in sheet.comments[1:]]
     for frame in left_out:
-        lines += _asked_for(frame, sheet.digits)
+        lines += _asked_for(frame)
     lines += [
         ";FOLD INI",
         "GLOBAL INTERRUPT DECL 3 WHEN $STOPMESS==TRUE DO IR_STOPM ( )",
@@ -71,10 +71,10 @@ def text(sheet: Sheet) -> bytes:
             head.append(f"; {step.note}")
         if step.base != base:
             base = step.base
-            head += _setting(sheet.bases[base], sheet.digits)
+            head += _setting(sheet.bases[base])
         if step.tool != tool:
             tool = step.tool
-            head += _setting(sheet.tools[tool], sheet.digits)
+            head += _setting(sheet.tools[tool])
         last = k + 1 == len(sheet.steps)
         rounds = ""
         if step.kind in ("LIN", "CIRC") and not last:
@@ -119,11 +119,11 @@ def _pose(frame: Floats, digits: Digits) -> str:
     return "{" + ",".join(names) % (*place, *turn) + "}"
 
 
-def _frame(frame: Floats, digits: Digits) -> str:
-    return "{FRAME: " + _pose(frame, digits)[1:]
+def _frame(frame: Floats) -> str:
+    return "{FRAME: " + _pose(frame, DIGITS["fine"])[1:]
 
 
-def _asked_for(frame: Frame, digits: Digits) -> list[str]:
+def _asked_for(frame: Frame) -> list[str]:
     """Comments: a frame that the program does not set."""
     variable = VARIABLES[frame.what]
     lines = [
@@ -131,17 +131,17 @@ def _asked_for(frame: Frame, digits: Digits) -> list[str]:
         f"; keeps it. The poses mean: {frame.told}",
     ]
     if frame.pose is not None:
-        lines.append(f";   {variable}={_frame(known(frame.pose), digits)}")
+        lines.append(f";   {variable}={_frame(known(frame.pose))}")
     return lines
 
 
-def _setting(frame: Frame, digits: Digits) -> list[str]:
+def _setting(frame: Frame) -> list[str]:
     """Statements that set a frame; none where it is left out."""
     if frame.left_out:
         return []
     comment = f"; {frame.what} {frame.told}"
     if frame.given:
-        return [comment, f"{VARIABLES[frame.what]}={_frame(known(frame.pose), digits)}"]
+        return [comment, f"{VARIABLES[frame.what]}={_frame(known(frame.pose))}"]
     if not re.fullmatch(r"\d{1,3}", known(frame.name), re.ASCII):
         raise ProgramError(
             "programs.writers.krl_number",

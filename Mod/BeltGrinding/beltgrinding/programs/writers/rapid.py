@@ -14,7 +14,7 @@ from ..program import ProgramError
 from ..languages.rapid.data import SPEEDS, ZONES, zone
 from .frames import undeclared
 from . import pressing
-from .text import ZONE_DIGITS, Digits, identifier, rounded, rounded_quaternions
+from .text import DIGITS, ZONE_DIGITS, Digits, identifier, rounded, rounded_quaternions
 
 if TYPE_CHECKING:
     from .frames import Frame
@@ -45,9 +45,9 @@ def text(sheet: Sheet) -> bytes:
             there = name in names[frame.what]  # one of the controller's may be given for several
             names[frame.what].append(name)
             if frame.given:
-                lines += _declaration(frame, name, held, sheet.digits)
+                lines += _declaration(frame, name, held)
             elif not there:
-                lines += _asked_for(frame, name, held, sheet.digits)
+                lines += _asked_for(frame, name, held)
                 sheet.notes.append(undeclared(frame, name))
     lines += ["  PROC main()", "    ConfL\\Off;", "    ConfJ\\Off;"]
     if any(step.kind == "SPL" for step in sheet.steps):
@@ -123,23 +123,23 @@ def _name(frame: Frame, number: int) -> str:
     return name
 
 
-def _declaration(frame: Frame, name: str, held: bool, digits: Digits) -> list[str]:
+def _declaration(frame: Frame, name: str, held: bool) -> list[str]:
     words = f"  ! {'tool' if frame.what == 'tool' else 'work object'} {frame.told}"
     if frame.what == "tool":
         return [
             words,
             "  ! Enter its load before the program runs.",
-            f"  PERS tooldata {name}:=[{_flag(not held)},{_pose(known(frame.pose), digits)},"
+            f"  PERS tooldata {name}:=[{_flag(not held)},{_pose(known(frame.pose))},"
             "[1,[0,0,1],[1,0,0,0],0,0,0]];",
         ]
     return [
         words,
-        f'  PERS wobjdata {name}:=[{_flag(held)},TRUE,"",{_pose(known(frame.pose), digits)},'
+        f'  PERS wobjdata {name}:=[{_flag(held)},TRUE,"",{_pose(known(frame.pose))},'
         "[[0,0,0],[1,0,0,0]]];",
     ]
 
 
-def _asked_for(frame: Frame, name: str, held: bool, digits: Digits) -> list[str]:
+def _asked_for(frame: Frame, name: str, held: bool) -> list[str]:
     """Comments: a frame that the program does not declare."""
     kind = TYPES[frame.what]
     flag = _flag(held == (frame.what == "base"))
@@ -148,7 +148,7 @@ def _asked_for(frame: Frame, name: str, held: bool, digits: Digits) -> list[str]
         f"  ! The poses mean: {frame.told}",
     ]
     if frame.pose is not None:
-        lines.append(f"  !   {_pose(known(frame.pose), digits)}")
+        lines.append(f"  !   {_pose(known(frame.pose))}")
     return lines
 
 
@@ -156,7 +156,8 @@ def _flag(value: bool) -> str:
     return "TRUE" if value else "FALSE"
 
 
-def _pose(frame: Floats, digits: Digits) -> str:
+def _pose(frame: Floats) -> str:
+    digits = DIGITS["fine"]
     place = rounded(frame[:3, 3], digits.mm).tolist()
     turn = rounded_quaternions(to_quaternions(frame[None, :3, :3]), digits.unit)[0].tolist()
     return _target(place, turn, digits)

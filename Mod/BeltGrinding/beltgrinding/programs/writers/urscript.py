@@ -13,7 +13,7 @@ from ..force_device import URSCRIPT
 from ..program import ProgramError
 from .frames import WHAT, check_all_set, taken_for_granted, undeclared
 from . import pressing
-from .text import identifier, rounded
+from .text import DIGITS, identifier, rounded
 
 if TYPE_CHECKING:
     from .frames import Frame
@@ -43,20 +43,16 @@ def text(sheet: Sheet) -> bytes:
             "  # ref_frame is not assigned in this program: assign it before, in the robot's base.",
             f"  # The poses mean: {base.told}",
         ]
-        lines += (
-            [f"  #   ref_frame = {_one(known(base.pose), digits)}"] if base.pose is not None else []
-        )
+        lines += [f"  #   ref_frame = {_one(known(base.pose))}"] if base.pose is not None else []
     else:
-        lines += [f"  # base {base.told}", f"  ref_frame = {_one(known(base.pose), digits)}"]
+        lines += [f"  # base {base.told}", f"  ref_frame = {_one(known(base.pose))}"]
     if first.left_out:
         sheet.notes += taken_for_granted([first])
         lines += [
             "  # The TCP is not set in this program: set it before.",
             f"  # The poses mean: {first.told}",
         ]
-        lines += (
-            [f"  #   set_tcp({_one(known(first.pose), digits)})"] if first.pose is not None else []
-        )
+        lines += [f"  #   set_tcp({_one(known(first.pose))})"] if first.pose is not None else []
     if any(step.kind == "SPL" for step in sheet.steps):
         lines.append("  # URScript has no splines: their points are joined by lines.")
     places = [
@@ -76,7 +72,7 @@ def text(sheet: Sheet) -> bytes:
             tool = step.tool
             if not sheet.tools[tool].left_out:
                 lines.append(f"  # tool {sheet.tools[tool].told}")
-                lines.append(f"  set_tcp({_one(known(sheet.tools[tool].pose), digits)})")
+                lines.append(f"  set_tcp({_one(known(sheet.tools[tool].pose))})")
         lines += [f"  {head}"] if head else []
         speed = decimal(sheet.speed_of(step) / 1000.0, sheet.digits.speed + 3, 1)
         place = places[step.pose]
@@ -109,7 +105,8 @@ def _format(digits: int) -> str:
     return "p[" + ", ".join([f"%.{digits}f"] * 6) + "]"
 
 
-def _one(frame: Floats, digits: int) -> str:
+def _one(frame: Floats) -> str:
+    digits = DIGITS["fine"].unit
     return _format(digits) % tuple(_vectors(frame[None], digits)[0])
 
 

@@ -80,7 +80,7 @@ def write_program(
     form: how a controller follows the passes. "": corners as the motions say. "spline": KRL's passes are spline
     blocks, in which a sharp bend stops the robot; in other languages as "zones": corners are rounded by half the
     shorter neighbouring way at most.
-    digits: "fine": poses read back within 1e-6 mm and 1e-6 degrees; "robot": 0.001 mm, 0.001 degrees, 0.1 mm/s.
+    digits: "fine", and a CSV's: poses read back within 1e-6 mm and 1e-6 degrees; "robot": 0.001 mm, 0.001 degrees, 0.1 mm/s.
     force_device: what sets the pressing force (``force_device.device_of``), for path motions; None: comments tell it.
     What is written is read again then, and refused unless each motion has its force.
 
@@ -133,13 +133,11 @@ def write_program(
     sheet.blend_mm, sheet.part_in_hand = float(blend_mm), bool(part_in_hand)
     if form not in ("", *FORMS) or digits not in DIGITS:
         raise ValueError(f"form {form!r}, digits {digits!r}")
-    sheet.form, sheet.digits = form, DIGITS[digits]
-    fit_zones(sheet)
-    if suffix != ".csv":
-        sheet.device = device_of(force_device)
+    pressed: list[Fact] = []
+    if suffix != ".csv":  # which no controller follows
+        sheet.form, sheet.digits, sheet.device = form, DIGITS[digits], device_of(force_device)
+        fit_zones(sheet)
         pressed = [*settle(sheet), *not_set(sheet)]
-    else:
-        pressed = []
     data = writer(sheet)
     if sheet.device is not None:
         check_forces(sheet, data, path.stem + suffix)

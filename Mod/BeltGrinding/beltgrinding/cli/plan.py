@@ -96,7 +96,7 @@ def line(one):
     )
 
 
-def text(summary, from_file, before=True):
+def text(summary, from_file=False, before=True):
     """A plan's summary in words. ``from_file``: its figures are those of the written programs; ``before``: those of the job
     as it was are told, too."""
     from ..planning.pictures import WORDS

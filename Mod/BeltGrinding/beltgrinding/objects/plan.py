@@ -188,6 +188,9 @@ class Work:
         return Found(ground.plan, self.planned, ground, words)
 
 
+EXPORTED = "passes.src"  # as what a path is exported
+
+
 class Found:
     """A plan with what the document keeps of it; made in any thread. ``words``: as ``pictures.WORDS``; ``ground``: a
     ``grinding.Ground``, where the passes were laid anew."""
@@ -330,7 +333,7 @@ def _lay(path: DocumentObject, obj: DocumentObject, ground: grinding.Ground | No
 
 def _zones(laid: dict[str, Any]) -> Floats:
     """Of passes as the path's export will have them: KRL's, whose spline blocks pass through the poses."""
-    return zones_written(raster.program(laid), "passes.src", "spline")
+    return zones_written(raster.program(laid), EXPORTED, form="spline")
 
 
 def write_programs(obj: DocumentObject, folder: Path | str) -> tuple[list[Path], list[str]]:

@@ -50,6 +50,7 @@ def add(commands):
 def _grind(arguments):
     from ..engine import InputError
     from ..planning import apply, from_file, grinding, rounds as plans
+    from ..programs.writers.writer import zones_written
     from ..raster import raster_path
 
     if Path(arguments.program).name != arguments.program:
@@ -75,7 +76,7 @@ def _grind(arguments):
         return [{"file": program.name}]
 
     def zones(laid):
-        return _zones_of_file(laid, arguments.program, arguments.form)
+        return zones_written(raster_path.program(laid), arguments.program, arguments.form)
 
     def work(context):
         job, first = _job(arguments, context)
@@ -177,21 +178,6 @@ def _check_name(name, form, job=None):
         device, passes[0]["force_N"] = of_job(job), job["belt_machine"]["force_N"]
     with tempfile.TemporaryDirectory() as folder:
         write_program(Path(folder, name), None, passes, form=form, force_device=device)
-
-
-def _zones_of_file(laid, name, form):
-    """(poses,) mm, -1: not known; the zones of a path as the program in a file has them: where its controller stops,
-    rounds, or passes through."""
-    import tempfile
-
-    from ..programs.registry import read_program
-    from ..programs.writers.writer import write_program
-    from ..raster import raster_path
-
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder, name)
-        write_program(file, None, raster_path.program(laid), form=form, digits="robot")
-        return read_program(file).path_arrays(laid["feeds"].max())["zones"]
 
 
 def _write_program(found, file, force, form):

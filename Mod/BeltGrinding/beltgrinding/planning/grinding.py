@@ -57,7 +57,7 @@ def grind(
     settings: Json | None = None,
     context: Context = None,
     told: Callable[[dict[str, Any]], object] | None = None,
-    zones: Callable[[Json], Floats] | None = None,
+    zones: Callable[[dict[str, Any]], Floats] | None = None,
 ) -> Ground:
     """Lays passes on the faces of a validated job, whose own programs do not matter, and plans their feeds, and forces
     if the machine keeps a force: down to ``GENTLER`` of the job's where ``force_min_N`` is not given, never up unless
@@ -140,7 +140,7 @@ def _try(
     wanted: Json,
     settings: Json,
     context: core.RunContext,
-    zones: Callable[[Json], Floats] | None,
+    zones: Callable[[dict[str, Any]], Floats] | None,
 ) -> dict[str, Any]:
     laid = raster_path.raster(data, wanted, context.part(0.0, 0.2))
     if zones is not None:

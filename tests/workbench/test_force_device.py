@@ -171,3 +171,11 @@ def test_a_document_s_programs_are_read_and_written_with_the_device(tmp_path):
     machine.ForceDevice = "none"
     notes = beltgrinding.export_program(robot, output)
     assert "20 to 50 N" in " ".join(map(str, notes))
+
+
+def test_a_device_that_the_language_has_not_is_told_before_planning(tmp_path, capsys):
+    file = tmp_path / "job.json"
+    file.write_text(json.dumps({**job_with("p.src", kind="controller"), "programs": []}))
+    assert cli.main(["grind", str(file), "-o", str(tmp_path / "out"), "-q"]) == 2
+    assert "KUKA KRL has no 'controller'; take analog" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()

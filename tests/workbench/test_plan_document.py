@@ -191,6 +191,19 @@ def test_what_cannot_be_planned_is_refused_and_changes_nothing():
 
 @pytest.mark.slow
 @pytest.mark.freecad
+def test_before_new_passes_is_the_job_as_it_was():
+    doc = FreeCAD.newDocument("again")
+    job = raster_job(doc)
+    first = beltgrinding.make_plan(job, Rounds=3, Check=False)
+    share = first.InTolerance
+    assert share > first.InToleranceBefore + 10.0
+    beltgrinding.apply_plan(first)
+    again = beltgrinding.make_plan(job, LayPasses=True, Rounds=1, Check=False)
+    assert near(again.InToleranceBefore, share, 2.0), (again.InToleranceBefore, share)
+
+
+@pytest.mark.slow
+@pytest.mark.freecad
 def test_passes_are_laid_and_planned_and_applied_together():
     write_pass()
     raster()

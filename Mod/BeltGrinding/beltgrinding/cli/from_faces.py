@@ -50,6 +50,7 @@ def add(commands):
 def _grind(arguments):
     from ..engine import InputError
     from ..planning import apply, from_file, grinding, rounds as plans
+    from ..programs.writers.writer import zones_written
     from ..raster import raster_path
 
     if Path(arguments.program).name != arguments.program:
@@ -74,12 +75,16 @@ def _grind(arguments):
         notes[:] = _write_program(found, program, arguments.force, arguments.form)
         return [{"file": program.name}]
 
+    def zones(laid):
+        return zones_written(raster_path.program(laid), arguments.program, arguments.form)
+
     def work(context):
         job, first = _job(arguments, context)
+        _check_name(arguments.program, arguments.form, job)
         apply.check({**job, "programs": []}, out, [arguments.part], arguments.force)
         begun = context.part(0.0, plan.PLANNING if wanted["check"] else 1.0)
         searched = {**wanted, "check": False}
-        found = grinding.grind(job, {**first, **passes}, searched, begun, told)
+        found = grinding.grind(job, {**first, **passes}, searched, begun, told, zones)
         if not wanted["check"]:
             return found, None
         rest = context.part(plan.PLANNING, 1.0)
@@ -154,20 +159,25 @@ def _faces(text):
         ) from None
 
 
-def _check_name(name, form):
-    """Refuses the name of a program that cannot be written, before anything is planned. Raises InputError."""
+def _check_name(name, form, job=None):
+    """Refuses the name of a program that cannot be written, before anything is planned, and a job's force device that
+    cannot set its force there. Raises InputError."""
     import tempfile
 
     import numpy as np
 
+    from ..programs.force_device import of_job
     from ..programs.writers.writer import _writer, write_program
 
     _writer(Path(name).suffix.lower(), Path(name))
-    poses = np.stack([np.eye(4)] * 2)
-    poses[1, 0, 3] = 1.0
+    poses = np.stack([np.eye(4)] * 3)
+    poses[:, 0, 3] = range(3)
+    passes = [{"poses": poses, "feed_mm_s": 1.0}]
+    device = None
+    if job is not None:
+        device, passes[0]["force_N"] = of_job(job), job["belt_machine"]["force_N"]
     with tempfile.TemporaryDirectory() as folder:
-        passes = [{"poses": poses, "feed_mm_s": 1.0}]
-        write_program(Path(folder, name), None, passes, form=form)
+        write_program(Path(folder, name), None, passes, form=form, force_device=device)
 
 
 def _write_program(found, file, force, form):

@@ -12,12 +12,14 @@ from typing import Any
 import numpy as np
 
 from ..base.files import cannot_be_written, write_whole
-from ..base.kinds import Array, Context, Json
+from ..base.kinds import Array, Context, Floats, Json
 from ..engine import InputError
 from ..cell.tool_path import tool_path
 from ..planning import apply, grinding, pictures, rounds as plans
 from ..programs.force_device import ForceDevice
 from ..programs.patch.patch import patch
+from ..programs.writers.writer import zones_written
+from ..raster import raster_path as raster
 from . import job_inputs, result_files
 from .job_data import children, inspection
 from .kinds import DocumentObject
@@ -181,9 +183,12 @@ class Work:
         if self.raster is None:
             plan = plans.plan(data, self.settings, context, told, self.sources)
             return Found(plan, self.planned, words=words)
-        ground = grinding.grind(data, self.raster, self.settings, context, told)
+        ground = grinding.grind(data, self.raster, self.settings, context, told, _zones)
         ground = ground._replace(plan=plans.against(ground.plan, data, context))
         return Found(ground.plan, self.planned, ground, words)
+
+
+EXPORTED = "passes.src"  # as what a path is exported
 
 
 class Found:
@@ -324,6 +329,11 @@ def _lay(path: DocumentObject, obj: DocumentObject, ground: grinding.Ground | No
     else:
         take(path, settings, ground.laid)
     path.Proposed = False
+
+
+def _zones(laid: dict[str, Any]) -> Floats:
+    """Of passes as the path's export will have them: KRL's, whose spline blocks pass through the poses."""
+    return zones_written(raster.program(laid), EXPORTED, form="spline")
 
 
 def write_programs(obj: DocumentObject, folder: Path | str) -> tuple[list[Path], list[str]]:

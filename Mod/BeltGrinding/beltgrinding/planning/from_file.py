@@ -163,7 +163,7 @@ def _read(
         sampling = told["in_tolerance"] - figures(coarse, plan.settings)["in_tolerance"]
     elif (
         forces
-        and plan.after.job["simulation"]["timing"] == data["simulation"]["timing"]
+        and typed(plan.after.job).simulation.timing == typed(data).simulation.timing
         and _same(mine, its, "feeds", FEED_MM_S)
         and _same(mine, its, "zones", ZONE_MM)
         and _in_place(mine, its)
@@ -198,7 +198,7 @@ def _goes_on(
     factors = plan.factors
     if missing:
         listed = [{"poses": poses.list_poses(one)} for one in _arrays(best.data)]
-        kept = [{k: v for k, v in one.items() if k == "name"} for one in job["programs"]]
+        kept = [{"name": one.name} if one.name else {} for one in typed(job).programs]
         job = {**job, "programs": [{**a, **b} for a, b in zip(kept, listed)]}
         settings.update(force_min_N=0.0, force_max_N=0.0)
         factors = np.ones(len(factors))

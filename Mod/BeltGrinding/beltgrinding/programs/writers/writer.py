@@ -8,6 +8,7 @@ their own arithmetic (32 bit in KRL and RAPID) is what limits them.
 from __future__ import annotations
 
 import math
+import tempfile
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -20,6 +21,7 @@ from .. import one_frame
 from ..force_device import Given as Device, device_of
 from ..problems import ordered
 from ..program import Motion, Program, ProgramError
+from ..registry import read_program
 from . import one_base
 from .frames import Frames, checked
 from .pressing import not_set, settle
@@ -36,6 +38,7 @@ if TYPE_CHECKING:
 WRITTEN_BY = (
     "written by BeltGrinding"  # in the head: such a file may be written anew (cli/outputs.py)
 )
+ANY_SPEED = 100.0  # mm/s, where only zones are asked for
 IN_HAND = ("held by the robot", "fixed in the room")  # as the RAPID reader says it
 
 Written: TypeAlias = "Program | Iterable[Motion] | Iterable[Json]"  # Json: passes
@@ -146,6 +149,15 @@ def write_program(
     path.parent.mkdir(parents=True, exist_ok=True)
     write_whole(path, data)
     return [*pressed, *sheet.notes, *turns, *joined, *given, *(fact for _, _, fact in left_out)]
+
+
+def zones_written(program: Program, name: str, form: str) -> Floats:
+    """(poses,) mm, -1: not known; the zones of a Program without arcs once it is written into a file called ``name``:
+    where its controller stops, rounds a corner, or passes through. Raises ProgramError."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder, name)
+        write_program(file, None, program, form=form, digits="robot")
+        return read_program(file).path_arrays(ANY_SPEED)["zones"]
 
 
 def _writer(suffix: str, path: Path) -> Callable[[Sheet], bytes]:

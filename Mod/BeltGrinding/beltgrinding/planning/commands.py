@@ -165,6 +165,10 @@ class Commands:
         np.maximum.at(found, self.group, self.forces)
         return found * factors
 
+    def written(self, forces: Floats) -> Floats:
+        """Forces N with the digits that programs have, in the robot's time; else as they are."""
+        return forces if self.limits is None else np.round(forces, FORCE_DIGITS)
+
     def feed(self) -> Floats:
         """(commands,) mm/s; that of its last motion that grinds, for a line that has several."""
         found = np.zeros(len(self))
@@ -226,8 +230,7 @@ class Commands:
         given = np.concatenate([a["forces"] for a in self.arrays])
         factor = np.ones(len(given)) if factors is None else factors[self.group]
         forces = np.where(self.rapid | (factor == 1.0), given, self.forces * factor)
-        if self.limits is not None:
-            forces = np.round(forces, FORCE_DIGITS)
+        forces = self.written(forces)
         programs = []
         begin = 0
         for program, arrays in zip(self.job["programs"], self.arrays):

@@ -230,7 +230,8 @@ class Commands:
         given = np.concatenate([a["forces"] for a in self.arrays])
         factor = np.ones(len(given)) if factors is None else factors[self.group]
         forces = np.where(self.rapid | (factor == 1.0), given, self.forces * factor)
-        forces = self.written(forces)
+        if self.limits is not None:
+            forces = np.round(forces, FORCE_DIGITS)
         programs = []
         begin = 0
         for program, arrays in zip(self.job["programs"], self.arrays):

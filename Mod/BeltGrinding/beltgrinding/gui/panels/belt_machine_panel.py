@@ -185,14 +185,14 @@ class BeltMachinePanel(Panel):
 
     def _device(self) -> set[str]:
         """The rows that the force device uses."""
-        value: set[str] = {"DeviceName", "DeviceScale", "DeviceOffset"}
+        value = {"DeviceName", "DeviceScale", "DeviceOffset"}
         used: dict[str, set[str]] = {
             "none": set(),
             "analog": value | {"DeviceOutput"},
             "controller": set(),
             "call": value,
             "template": {"DeviceTemplate"},
-        }[self.obj.ForceDevice]
+        }
         bounds = {
             "DeviceLeast",
             "DeviceGreatest",
@@ -200,7 +200,8 @@ class BeltMachinePanel(Panel):
             "DeviceDeadTime",
             "DeviceResolution",
         }
-        return used | (bounds if self.obj.ForceDevice != "none" else set())
+        device = self.obj.ForceDevice
+        return used[device] | (bounds if device != "none" else set())
 
     def _layers_changed(self) -> None:
         try:

@@ -19,7 +19,8 @@ from ..job import robot_time
 from ..planning import apply, grinding, pictures, rounds as plans
 from ..programs.patch.patch import patch
 from . import job_inputs, result_files
-from .job_data import KEYS as JOB_KEYS, children, inspection
+from .belt_machine import BeltMachine
+from .job_data import KEYS as JOB_KEYS, children, inspection, required
 from .kinds import DocumentObject
 from .properties import Key, Output, add_keys, add_outputs, from_job, to_job
 from .proxy import Proxy
@@ -95,7 +96,10 @@ class Plan(Proxy):
     VIEW = "PlanView"
 
     def add_properties(self, obj: DocumentObject) -> None:
+        earlier = "Goal" in obj.PropertiesList and "Timing" not in obj.PropertiesList
         add_keys(obj, KEYS)
+        if earlier:  # a plan of an earlier version: by the job's time law
+            obj.Timing = "job"
         if "LayPasses" not in obj.PropertiesList:
             text = (
                 "the passes are laid anew, too: step-over, run-out, how often they are run through"
@@ -139,7 +143,12 @@ class Plan(Proxy):
 
 def fingerprint(obj: DocumentObject, job: DocumentObject) -> str:
     """Hash of all that a plan depends on."""
-    data = [job_inputs.fingerprint(job), inspection(job), obj.Proxy.settings(obj), obj.LayPasses]
+    settings = obj.Proxy.settings(obj)
+    if settings["timing"] == "robot":
+        settings["controller"] = required(job, BeltMachine, "belt machine").Controller
+    else:
+        del settings["timing"]  # as before there was a choice
+    data = [job_inputs.fingerprint(job), inspection(job), settings, obj.LayPasses]
     return hashlib.sha256(json.dumps(data, sort_keys=True, allow_nan=False).encode()).hexdigest()
 
 

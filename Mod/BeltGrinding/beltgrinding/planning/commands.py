@@ -168,6 +168,10 @@ class Commands:
         np.maximum.at(found, self.group, self.forces)
         return found * factors
 
+    def written(self, forces: Floats) -> Floats:
+        """Forces N with the digits that programs have, in the robot's time; else as they are."""
+        return forces if self.limits is None else np.round(forces, FORCE_DIGITS)
+
     def feed(self) -> Floats:
         """(commands,) mm/s; that of its last motion that grinds, for a line that has several."""
         found = np.zeros(len(self))

@@ -48,6 +48,9 @@ def test_from_the_limits_to_a_planned_program():
     assert field("rounds").rowCount() == len(plan.Rates) >= 3
     assert list(path.Feeds) == feeds and max(plan.NewFeeds) <= 120.0 + 1e-9
 
+    write = field("writePrograms", QtGui.QPushButton)
+    assert not write.isEnabled() and "no imported program" in write.toolTip()
+
     chart = field("feedChart")
     moving = next(i for i, fast in enumerate(plan.Rapid) if not fast)
     assert f"pose {moving + 1}" in chart.text(moving) and "→" in chart.text(moving)

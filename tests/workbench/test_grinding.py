@@ -61,7 +61,7 @@ def test_too_much_stock_for_the_least_feed_repeats_the_passes():
 def test_forces_go_down_only_unless_asked():
     found = grinding.grind(job_of(), PASSES, QUICK)
     forces = found.plan.commands.force(found.plan.factors)
-    assert forces.max() <= 30.0 + 1e-9 and found.plan.factors.min() >= grinding.GENTLE - 1e-9
+    assert forces.max() <= 30.0 + 1e-9 and found.plan.factors.min() >= grinding.GENTLER - 1e-9
     position = grinding._with_forces(typed(job_of(control="position")), rounds.validate({}))
     assert position["force_min_N"] == 0.0
 

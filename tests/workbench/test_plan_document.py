@@ -56,6 +56,7 @@ def test_a_plan_is_kept_applied_taken_back_and_goes_out_of_date():
     doc.commitTransaction()
     assert plan.Applied and not plan.OutOfDate and path.Planned
     assert list(path.Feeds) == list(plan.NewFeeds) != feeds
+    assert job.Timing == "trapezoidal" and list(path.Zones) == list(plan.Zones)
     simulation = beltgrinding.simulate(job)
     deviation = beltgrinding.make_deviation(job)
     assert near(deviation.InTolerance, plan.InTolerance, 1e-6), "what was told is what is ground"
@@ -79,7 +80,7 @@ def test_a_plan_is_kept_applied_taken_back_and_goes_out_of_date():
         assert "plan again" in str(error)
     path.Feed = "90 mm/s"
     doc.recompute()
-    assert not plan.OutOfDate and not plan.Applied, "as it was when it was planned"
+    assert plan.OutOfDate and not plan.Applied, "the job has the robot's time since it was applied"
     job.ToleranceUpper = "0.2 mm"
     doc.recompute()
     assert plan.OutOfDate
@@ -98,9 +99,8 @@ def test_a_plan_replaces_one_feed_for_all_and_plans_forces():
     path = doc.RasterPath
     path.FeedOverride, path.ForceOverride = 100, "25 N"
     doc.recompute()
-    plan = beltgrinding.make_plan(
-        job, ForceMin="10 N", ForceMax="60 N", FeedMin="60 mm/s", FeedMax="120 mm/s", **QUICK
-    )
+    limits = {"ForceMin": "10 N", "ForceMax": "60 N", "FeedMin": "60 mm/s", "FeedMax": "120 mm/s"}
+    plan = beltgrinding.make_plan(job, Timing="job", **limits, **QUICK)
     assert set(plan.OldForces) == {25.0} and max(plan.NewForces) <= 60.0 + 1e-9
     moving = [f for f, fast in zip(plan.NewFeeds, plan.Rapid) if not fast]
     assert 60.0 - 1e-9 <= min(moving) and max(moving) <= 120.0 + 1e-9
@@ -124,7 +124,7 @@ def test_programs_of_files_are_written_with_their_new_feeds_only():
     job = make(block(doc))
     doc.removeObject("RobotPath")
     path = beltgrinding.import_program(job, "grind.src")
-    plan = beltgrinding.make_plan(job, Rounds=3, Check=False)
+    plan = beltgrinding.make_plan(job, Timing="job", Rounds=3, Check=False)
     assert plan.Better, plan.Rates
     Path("out").mkdir()
     files, without = beltgrinding.write_plan(plan, "out")
@@ -187,6 +187,19 @@ def test_what_cannot_be_planned_is_refused_and_changes_nothing():
         raise AssertionError("limits")
     except InputError as error:
         assert doc.getObject("Plan") is plan and not plan.Data, "the one that was there stays"
+
+
+@pytest.mark.slow
+@pytest.mark.freecad
+def test_before_new_passes_is_the_job_as_it_was():
+    doc = FreeCAD.newDocument("again")
+    job = raster_job(doc)
+    first = beltgrinding.make_plan(job, Rounds=3, Check=False)
+    share = first.InTolerance
+    assert share > first.InToleranceBefore + 10.0
+    beltgrinding.apply_plan(first)
+    again = beltgrinding.make_plan(job, LayPasses=True, Rounds=1, Check=False)
+    assert near(again.InToleranceBefore, share, 2.0), (again.InToleranceBefore, share)
 
 
 @pytest.mark.slow

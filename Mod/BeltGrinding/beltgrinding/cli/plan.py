@@ -96,7 +96,7 @@ def line(one):
     )
 
 
-def text(summary, from_file, before=True):
+def text(summary, from_file=False, before=True):
     """A plan's summary in words. ``from_file``: its figures are those of the written programs; ``before``: those of the job
     as it was are told, too."""
     from ..planning.pictures import WORDS
@@ -124,6 +124,10 @@ def text(summary, from_file, before=True):
         lines.append(
             f"at {summary['beyond_limits']['after']} places feed or force change faster than they may: the program's own "
             "steps, or motions that stay"
+        )
+    if summary["timing"] == "job":
+        lines.append(
+            f"planned by the job's own time law ({summary['time_law']}), not for the time that the robot takes"
         )
     feeds = summary["feed_mm_s"]
     lines.append(

@@ -82,12 +82,20 @@ def timed(job: Job | Json) -> dict[str, Any]:
 def laid_out(arrays: Mapping[str, Array], found: Limits) -> dict[str, Array]:
     """Arrays of a program (as ``poses.program_arrays``) with the digits that its file will have, and each pose's zone told:
     no more than half of the shorter way beside it."""
-    placed = np.array(arrays["frames"], dtype=float)
-    for k, frame in enumerate(placed):
-        placed[k] = frames.from_abc(
-            np.round(frame[:3, 3], PLACE_DIGITS), np.round(frames.to_abc(frame), ANGLE_DIGITS)
-        )
+    placed = rounded_frames(arrays["frames"])
     return {**arrays, "frames": placed, "zones": _zones(arrays, placed, found)}
+
+
+def rounded_frames(placed: Floats) -> Floats:
+    """Frames (n, 4, 4) with the digits that programs have: places of mm, and KUKA's angles A, B, C of degrees."""
+    return np.array(
+        [
+            frames.from_abc(
+                np.round(frame[:3, 3], PLACE_DIGITS), np.round(frames.to_abc(frame), ANGLE_DIGITS)
+            )
+            for frame in placed
+        ]
+    ).reshape(-1, 4, 4)
 
 
 def rounded_feeds(feeds: Floats) -> Array:

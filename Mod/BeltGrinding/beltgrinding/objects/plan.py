@@ -15,13 +15,15 @@ from ..base.files import cannot_be_written, write_whole
 from ..base.kinds import Array, Context, Floats, Json
 from ..engine import InputError
 from ..cell.tool_path import tool_path
+from ..job import robot_time
 from ..planning import apply, grinding, pictures, rounds as plans
 from ..programs.force_device import ForceDevice
 from ..programs.patch.patch import patch
 from ..programs.writers.writer import zones_written
 from ..raster import raster_path as raster
 from . import job_inputs, result_files
-from .job_data import children, inspection
+from .belt_machine import BeltMachine
+from .job_data import KEYS as JOB_KEYS, children, inspection, required
 from .kinds import DocumentObject
 from .properties import Key, Output, add_keys, add_outputs, from_job, to_job
 from .proxy import Proxy
@@ -30,6 +32,7 @@ from .robot_path import RobotPath, force_device, read_again
 
 KEYS = (
     Key("Goal", "Enumeration", "Goal", "plan.goal"),
+    Key("Timing", "Enumeration", "Goal", "plan.timing"),
     Key("WantedShare", "Float", "Goal", "plan.wanted_share"),
     Key("Probability", "Float", "Goal", "plan.probability"),
     Key("PlacementDeviation", "Length", "Goal", "plan.placement_sd_mm"),
@@ -51,6 +54,8 @@ KEYS = (
     Key("Smoothing", "Float", "Rounds", "plan.smoothing"),
     Key("Check", "Bool", "Rounds", "plan.check"),
 )
+TIME_LAW = ("timing", *robot_time.KEYS)  # keys of a job's simulation
+TIMING = [key for key in JOB_KEYS if key.key.removeprefix("simulation.") in TIME_LAW]
 OUTPUTS = (
     Output("Better", "Bool", "Plan", "more of the area comes into tolerance than before"),
     Output("Applied", "Bool", "Plan", "the programs of the job have the planned feeds and forces"),
@@ -70,6 +75,8 @@ OUTPUTS = (
     Output("NewFeeds", "FloatList", "Plan", "planned, of every pose, mm/s", True),
     Output("OldForces", "FloatList", "Plan", "before, of every pose, N", True),
     Output("NewForces", "FloatList", "Plan", "planned, of every pose, N", True),
+    Output("Zones", "FloatList", "Plan", "planned, of every pose, mm; below 0: the default", True),
+    Output("TimeLaw", "String", "Plan", "of the job, as it is planned for; JSON", True),
     Output("Kept", "BoolList", "Plan", "poses whose force is the belt machine's still", True),
     Output("Changes", "String", "Plan", "of each path, what changes in its file; JSON", True),
     Output("LeftPoints", "VectorList", "Plan", "corners of what stays out of tolerance", True),
@@ -92,7 +99,10 @@ class Plan(Proxy):
     VIEW = "PlanView"
 
     def add_properties(self, obj: DocumentObject) -> None:
+        earlier = "Goal" in obj.PropertiesList and "Timing" not in obj.PropertiesList
         add_keys(obj, KEYS)
+        if earlier:  # a plan of an earlier version: by the job's time law
+            obj.Timing = "job"
         if "LayPasses" not in obj.PropertiesList:
             text = (
                 "the passes are laid anew, too: step-over, run-out, how often they are run through"
@@ -136,7 +146,12 @@ class Plan(Proxy):
 
 def fingerprint(obj: DocumentObject, job: DocumentObject) -> str:
     """Hash of all that a plan depends on."""
-    data = [job_inputs.fingerprint(job), inspection(job), obj.Proxy.settings(obj), obj.LayPasses]
+    settings = obj.Proxy.settings(obj)
+    if settings["timing"] == "robot":
+        settings["controller"] = required(job, BeltMachine, "belt machine").Controller
+    else:
+        del settings["timing"]  # as before there was a choice
+    data = [job_inputs.fingerprint(job), inspection(job), settings, obj.LayPasses]
     return hashlib.sha256(json.dumps(data, sort_keys=True, allow_nan=False).encode()).hexdigest()
 
 
@@ -242,7 +257,10 @@ def store(obj: DocumentObject, job: DocumentObject, found: Found) -> None:
     new = np.where(commands.rapid, commands.feeds, plan.new[commands.group])
     factor = np.where(commands.rapid, 1.0, plan.factors[commands.group])
     obj.OldFeeds, obj.NewFeeds = commands.feeds.tolist(), new.tolist()
-    obj.OldForces, obj.NewForces = commands.forces.tolist(), (commands.forces * factor).tolist()
+    obj.OldForces = commands.forces.tolist()
+    obj.NewForces = commands.written(commands.forces * factor).tolist()
+    obj.Zones = np.concatenate([one["zones"] for one in commands.arrays]).tolist()
+    obj.TimeLaw = json.dumps({key: plan.job["simulation"][key] for key in TIME_LAW})
     given = np.concatenate([one["forces"] for one in commands.arrays])
     obj.Kept = tuple(bool(value) for value in (given < 0) & (factor == 1.0))
     obj.Changes = json.dumps(
@@ -298,6 +316,8 @@ def put_in(obj: DocumentObject, ground: grinding.Ground | None = None) -> None:
         )
     if obj.Raster:
         _lay(paths[0], obj, ground)
+    if obj.TimeLaw:  # a plan of earlier versions has none
+        from_job(job, TIMING, {"simulation": json.loads(obj.TimeLaw)})
     owner = np.array(obj.PathOf)
     feeds, forces = np.array(obj.NewFeeds), np.array(obj.NewForces)
     forces[np.array(obj.Kept, dtype=bool)] = -1.0
@@ -305,6 +325,8 @@ def put_in(obj: DocumentObject, ground: grinding.Ground | None = None) -> None:
         path.FeedOverride = 0.0
         path.ForceOverride = 0.0
         path.Feeds, path.Forces = feeds[owner == k].tolist(), forces[owner == k].tolist()
+        if obj.TimeLaw and not path.Source:
+            path.Zones = np.array(obj.Zones)[owner == k].tolist()
         path.Planned = True
         path.recompute()
     obj.AppliedFingerprint = fingerprint(obj, job)

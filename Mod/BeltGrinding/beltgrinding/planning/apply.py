@@ -176,7 +176,7 @@ def changes(found: Plan, number: int) -> list[dict[str, Any]]:
     program = commands.job["programs"][number]
     moving = np.zeros(len(commands), dtype=bool)
     moving[commands.group[~commands.rapid]] = True
-    differ, forces = plans.changed(found), commands.force(found.factors)
+    differ, forces = plans.changed(found), commands.written(commands.force(found.factors))
     pressed = bool((found.factors[commands.program == number] != 1.0).any())
     for k in np.flatnonzero((commands.program == number) & moving):
         if differ[k] or "feed_mm_s" in program or (pressed and "force_N" in program):
@@ -193,7 +193,9 @@ def changes(found: Plan, number: int) -> list[dict[str, Any]]:
 def feeds_csv(found: Plan) -> str:
     """Every command: program from 1, line, its first pose from 1, old and planned feed, mm/s, and force, N."""
     commands = found.commands
-    before, after = (commands.force(f) for f in (np.ones(len(commands)), found.factors))
+    before, after = (
+        commands.written(commands.force(f)) for f in (np.ones(len(commands)), found.factors)
+    )
     file = io.StringIO()
     rows = csv.writer(file, lineterminator="\n")
     rows.writerow(

@@ -18,6 +18,13 @@ from ..presets import robot as robots
 from ..programs.force_device import of_job
 
 STILL = 1e-9  # mm; less is no way
+PATH = (
+    "frames",
+    "forces",
+    "rapid",
+    "lines",
+    "zones",
+)  # of a program's arrays, as core.ToolPath takes them
 FORCE_DIGITS = 1  # of N, in programs
 
 
@@ -161,6 +168,10 @@ class Commands:
         np.maximum.at(found, self.group, self.forces)
         return found * factors
 
+    def written(self, forces: Floats) -> Floats:
+        """Forces N with the digits that programs have, in the robot's time; else as they are."""
+        return forces if self.limits is None else np.round(forces, FORCE_DIGITS)
+
     def feed(self) -> Floats:
         """(commands,) mm/s; that of its last motion that grinds, for a line that has several."""
         found = np.zeros(len(self))
@@ -172,24 +183,18 @@ class Commands:
         """(commands,) s that they take at feeds (commands,) mm/s, without acceleration; 0 of rapid motions."""
         return np.bincount(self.group, self._lengths(), len(self)) / np.maximum(feeds, 1e-9)
 
-    def times(self, feeds: Floats) -> Floats:
+    def times(self, feeds: Floats) -> Array:
         """(commands,) s that they take at feeds (commands,) mm/s by the job's time law; 0 of rapid motions."""
         new = np.where(self.rapid, self.feeds, feeds[self.group])
-        lasts = [
-            np.diff(
-                core.ToolPath(
-                    **{name: a[name] for name in ("frames", "forces", "rapid", "lines", "zones")},
-                    feeds=new[self.of_program == k],
-                    time_law=self._time_law,
-                ).times(),
-                prepend=0.0,
-            )
-            for k, a in enumerate(self.arrays)
-        ]
+        lasts = []
+        for k, arrays in enumerate(self.arrays):
+            given: dict[str, Any] = {name: arrays[name] for name in PATH}
+            given.update(feeds=new[self.of_program == k], time_law=self._time_law)
+            lasts.append(np.diff(core.ToolPath(**given).times(), prepend=0.0))
         own = np.where(self.rapid, 0.0, np.concatenate(lasts))
         return np.bincount(self.group, own, len(self))
 
-    def way(self) -> Floats:
+    def way(self) -> Array:
         """(commands,) mm, 0 of rapid motions."""
         return np.bincount(self.group, self._lengths(), len(self))
 

@@ -31,9 +31,12 @@ MATTERS = 0.01  # of the area: a reason for less is let be
 CLOSER = 0.7  # step-over against the one before
 CLOSEST = 0.2  # of the contact's width
 MOST_POSES = 20_000
+SMOOTHER = 2.0  # times the length over which the wheel turns, where the robot is slow to turn it and cuts too deep
+MOST_SMOOTHING = 4.0  # of the contact's length
 MOST_REPEATS = 20
 MOST_OF = 0.9  # of the area that is not done at the least feed: the repeats are for it
 GENTLE = 0.2  # of the force: the least where none is given, so that borders and ends of passes can be spared
+GENTLER = 0.05  # in the robot's time, which is slow at ends and turns
 FINAL = 0.5  # of the time: the last plan
 
 
@@ -45,7 +48,7 @@ class Ground(NamedTuple):
     plan: rounds.Plan
     tried: list[
         dict[str, Any]
-    ]  #: change, step_over_mm, repeats, run_out_mm, poses, in_tolerance, better
+    ]  #: change, step_over_mm, repeats, run_out_mm, smoothing_mm, poses, in_tolerance, better
 
 
 def grind(
@@ -57,7 +60,7 @@ def grind(
     zones: Callable[[dict[str, Any]], Floats] | None = None,
 ) -> Ground:
     """Lays passes on the faces of a validated job, whose own programs do not matter, and plans their feeds, and forces
-    if the machine keeps a force: down to ``GENTLE`` of the job's where ``force_min_N`` is not given, never up unless
+    if the machine keeps a force: down to ``GENTLER`` of the job's where ``force_min_N`` is not given, never up unless
     ``force_max_N`` is. ``raster_settings``: where the search begins; ``settings``: of the plan; ``told(dict)``: as
     ``tried``, then as rounds of the plan; ``zones(path)``: (poses,) mm, -1: the job's default, as the program's file will
     have them; without it those of the raster.
@@ -65,8 +68,8 @@ def grind(
     Returns a ``Ground``. Raises InputError, Cancelled.
     """
     context = context or core.RunContext()
-    settings = _with_forces(typed(job), rounds.validate(settings or {}))
-    data, _ = rounds.in_time(job, settings)
+    planned = _with_forces(typed(job), rounds.validate(settings or {}))
+    data, settings = rounds.in_time(job, planned)
     best: dict[str, Any] | None = None
     tried: list[dict[str, Any]] = []
     queue: list[tuple[str, Json]] = [("first", raster_path.validate(raster_settings or {}))]
@@ -92,6 +95,7 @@ def grind(
                 "step_over_mm": one["laid"]["step_over_mm"],
                 "repeats": one["wanted"]["repeats"],
                 "run_out_mm": one["wanted"]["run_out_mm"],
+                "smoothing_mm": one["wanted"]["smoothing_mm"],
                 "poses": len(one["laid"]["frames"]),
                 "in_tolerance": one["in_tolerance"],
                 "better": better,
@@ -114,10 +118,12 @@ def grind(
     return Ground(best["wanted"], best["laid"], found, tried)
 
 
-def _with_forces(job: Job, settings: Json) -> Json:
+def _with_forces(job: Job, settings: Json) -> dict[str, Any]:
+    settings = dict(settings)
     machine = job.belt_machine
     if machine.control == "force" and settings["force_min_N"] == 0.0:
-        settings = {**settings, "force_min_N": GENTLE * machine.force_N}
+        least = GENTLER if settings["timing"] == "robot" else GENTLE
+        settings = {**settings, "force_min_N": least * machine.force_N}
     return settings
 
 
@@ -160,7 +166,7 @@ def _others(one: Json) -> list[tuple[str, Json]]:
         ):
             share = shares["slowest_feed"]
             found.append((share, "repeats", {**wanted, "repeats": repeats}))
-    width = laid["contact_width_mm"]
+    width, length = laid["contact_width_mm"], laid["contact_length_mm"]
     between = shares["shared"] + shares["fringe"] + shares["border"]
     closer = CLOSER * laid["step_over_mm"]
     if between > MATTERS and len(laid["frames"]) / CLOSER <= MOST_POSES:
@@ -168,10 +174,13 @@ def _others(one: Json) -> list[tuple[str, Json]]:
             share = shares["shared"] + shares["fringe"]
             found.append((share, "step_over", {**wanted, "step_over_mm": closer}))
     if shares["border"] > MATTERS:
-        length = laid["contact_length_mm"]
         for run_out in (0.25 * length, -0.25 * length):
             other = {**wanted, "run_out_mm": round(wanted["run_out_mm"] + run_out, 3)}
             found.append((0.9 * shares["border"], "run_out", other))
+    below = one["plan"].rounds[-1]["below"]
+    if below > MATTERS and wanted["smoothing_mm"] < MOST_SMOOTHING * length:
+        smoother = max(SMOOTHER * wanted["smoothing_mm"], length)
+        found.append((below, "smoothing", {**wanted, "smoothing_mm": round(smoother, 3)}))
     return [(name, settings) for _, name, settings in sorted(found, key=lambda one: -one[0])]
 
 

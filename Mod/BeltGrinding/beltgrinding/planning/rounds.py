@@ -111,7 +111,7 @@ def plan(
     job = typed(data)
     _refuse(job, settings)
     sure.refuse(job, settings)
-    settings = limits.within_device(job, dict(settings))
+    settings = limits.within_device(job, settings)
     whole_job = resolution.with_mode(settled(data, context), resolution.FULL)
     searched = resolution.with_mode(whole_job, settings["search_resolution"])
     commands = Commands(searched, settings, sources)
@@ -185,7 +185,7 @@ def against(found: Plan, data: Json, context: Context = None) -> Plan:
     return found._replace(before=before, better=better, checked=checked)
 
 
-def in_time(job: Job | Json, settings: Json) -> tuple[Json, Json]:
+def in_time(job: Job | Json, settings: dict[str, Any]) -> tuple[Json, dict[str, Any]]:
     """(a validated job under the time that ``settings``, validated, plan in, those with the acceleration that the
     robot has where they give none). Few levels of feed jump: no acceleration is asked of them."""
     data = records.plain(job)
@@ -355,6 +355,7 @@ def summary(found: Plan) -> dict[str, Any]:
     forces = found.commands.force(found.factors)
     return {
         "timing": found.settings["timing"],
+        "time_law": typed(found.job).simulation.timing,
         "controller": robot_time.limits(found.job).controller,
         "better": found.better,
         "before": figures(found.before, found.settings),

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..base.kinds import Array, Context, Json
+from ..base.kinds import Array, Context, Floats, Json
 from ..engine import InputError, core
+from ..job import engine_input, robot_time
 from ..job.settings import Job
 from ..job.workpiece import apply_stock
-from . import around, path_check, tool
+from . import around, tool
 
 if TYPE_CHECKING:
     from ..job.engine_input import EngineInput
@@ -27,6 +28,7 @@ AS_EVEN = 0.1  # of the residual: so near the best, the quickest is taken
 ANGLES = (0.0, 45.0, 90.0, 135.0)  # degrees, from the direction in which the faces are longest
 BELT_ANGLES = (0.0, 90.0)  # of a belt, whose contacts take their time
 ROUND = 0.75  # of a turn, that coarse samples of closed faces take at least
+STILL = 1e-6  # mm; less is no way
 FLAT = 0.3  # of its unit length, the mean of the normals of faces that look one way
 
 
@@ -70,7 +72,8 @@ def best(
     ``lay(settings, context)`` gives a path with contacts, feeds and so on as ``raster_path.raster`` does. Returns
     (settings of the best way, list of dict(along, direction, residual, untouched, duration_s, poses, chosen, no_room,
     error: why there is no path) of all ways). residual: standard deviation of the removal over the area, by its mean:
-    what stays of an allowance that comes off on the mean; untouched: of the area; duration_s: at constant feed.
+    what stays of an allowance that comes off on the mean; untouched: of the area; duration_s: by the robot, whose time
+    lets sharp turns grind deep.
     A way whose path takes nothing off is as one without a path. Raises InputError (no way gives a path), Cancelled.
     """
     context = context or core.RunContext()
@@ -139,10 +142,11 @@ def _judged(
         must_touch=False,
         shifted_laws=(),
     )
-    names = "feeds", "forces", "rapid", "lines", "zones"
-    some = _sparse(path, step) if pressing.belt else slice(None)
-    columns = {name: path[name][some] for name in names}
-    tool_path = core.ToolPath(frames=path["contacts"][some], **columns)
+    some = _sparse(path, step) if pressing.belt else np.arange(len(path["contacts"]))
+    columns = {name: path[name][some] for name in ("forces", "rapid", "lines", "zones")}
+    times = _times(job, path)
+    feeds = _feeds(path["contacts"][some], times[some], path["feeds"][some])
+    tool_path = core.ToolPath(frames=path["contacts"][some], feeds=feeds, **columns)
     core.simulate(field, tool_path, given, context)
     removed, weight = before - field.height, field.areas.astype(float)
     removed[~np.isfinite(removed)] = 0.0
@@ -157,10 +161,27 @@ def _judged(
     return {
         "residual": spread / mean,
         "untouched": float(untouched),
-        "duration_s": float(path_check.motion(path)["time"].sum()),
+        "duration_s": float(times[-1]),
         "no_room": path["no_room"],
         "poses": len(path["frames"]),
     }
+
+
+def _times(job: Job, path: Json) -> Array:
+    """(n,) s, at which the robot comes to a path's poses."""
+    law = engine_input.time_law(robot_time.timed(job)["simulation"])
+    given = {name: path[name] for name in ("frames", "feeds", "forces", "rapid", "lines", "zones")}
+    return core.ToolPath(**given, time_law=law).times()
+
+
+def _feeds(contacts: Floats, times: Floats, feeds: Floats) -> Array:
+    """mm/s (n,) of the contact with which it comes to ``contacts`` (n, 4, 4) at ``times`` (n,) s; where it does not move as
+    ``feeds`` (n,)."""
+    way = np.linalg.norm(np.diff(contacts[:, :3, 3], axis=0), axis=1)
+    found, lasts = feeds.copy(), np.diff(times)
+    moves = np.flatnonzero((way > STILL) & (lasts > 0.0))
+    found[moves + 1] = way[moves] / lasts[moves]
+    return found
 
 
 def _sparse(path: Json, step: float) -> Array:

@@ -120,6 +120,11 @@ class PlanPanel(RunPanel):
 
     def _changes(self) -> Fold:
         box = Form(self.obj, "")
+        timings = {
+            "robot": translate("BeltGrinding", "the robot's"),
+            "job": translate("BeltGrinding", "as the job says"),
+        }
+        box.add("Timing", translate("BeltGrinding", "Time law"), timings)
         box.add("FeedChange", translate("BeltGrinding", "Change of feed, mm/s per mm"))
         box.add("Acceleration", translate("BeltGrinding", "Acceleration"))
         if self.obj.getParentGroup() is not None and self._by_force():

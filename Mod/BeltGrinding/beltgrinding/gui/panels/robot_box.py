@@ -51,6 +51,22 @@ class RobotBox(QtGui.QGroupBox):
         self.choice.setCurrentIndex(self.ids.index(current) if current in self.ids else 0)
         self.choice.setEnabled(OWN not in self.ids)
         layout.addRow(translate("BeltGrinding", "Robot"), self.choice)
+        self.controllers = ["", *(one["id"] for one in presets.controllers())]
+        self.controller = steady(QtGui.QComboBox())
+        self.controller.setObjectName("controller")
+        self.controller.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
+        self.controller.addItem(translate("BeltGrinding", "(not known: a cautious one)"))
+        for one in presets.controllers():
+            self.controller.addItem(one["name"])
+        given = machine.Controller
+        self.controller.setCurrentIndex(
+            self.controllers.index(given) if given in self.controllers else 0
+        )
+        self.controller.setToolTip(machine.getDocumentationOfProperty("Controller"))
+        layout.addRow(translate("BeltGrinding", "Controller"), self.controller)
+        self.controller.currentIndexChanged.connect(
+            lambda index: self._set("Controller", self.controllers[index])
+        )
         self.fields = []
         for name, text in (
             ("BaseFromRobot", translate("BeltGrinding", "Robot in base")),

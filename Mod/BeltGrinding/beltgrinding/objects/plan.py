@@ -260,7 +260,9 @@ def store(obj: DocumentObject, job: DocumentObject, found: Found) -> None:
     obj.OldForces = commands.forces.tolist()
     obj.NewForces = commands.written(commands.forces * factor).tolist()
     obj.Zones = np.concatenate([one["zones"] for one in commands.arrays]).tolist()
-    obj.TimeLaw = json.dumps({key: plan.job["simulation"][key] for key in TIME_LAW})
+    obj.TimeLaw = json.dumps(
+        {key: plan.job["simulation"][key] for key in TIME_LAW}, allow_nan=False
+    )
     given = np.concatenate([one["forces"] for one in commands.arrays])
     obj.Kept = tuple(bool(value) for value in (given < 0) & (factor == 1.0))
     obj.Changes = json.dumps(

@@ -189,3 +189,32 @@ def test_a_preset_makes_it_a_free_belt_that_is_drawn_in_the_cell():
     settle()
     dock.close()
     pictures.check(*walked())
+
+
+def test_the_force_device_has_its_fields():
+    job = prepare()
+    machine = job.Document.BeltMachine
+    menu("Belt machine")
+    assert shown("ForceDevice") and not shown("DeviceName") and not shown("DeviceLeast")
+    choose_in("ForceDevice", "Analog output")
+    assert shown("DeviceName") and shown("DeviceOutput") and shown("DeviceRamp")
+    assert not shown("DeviceTemplate")
+    type_in("DeviceName", "aoForce")
+    type_in("DeviceScale", "0.01")
+    type_in("DeviceOffset", "-0.1")
+    type_in("DeviceGreatest", "80 N")
+    press("OK")
+    given = machine.Proxy.to_job(machine)["belt_machine"]["force_device"]
+    assert (given["kind"], given["name"], given["scale_per_N"]) == ("analog", "aoForce", 0.01)
+    assert (given["offset"], given["greatest_N"], given["output"]) == (-0.1, 80.0, 1)
+    menu("Belt machine")
+    choose_in("ForceDevice", "Statement of your own")
+    type_in("DeviceTemplate", "FORCE({newton:.1f})")
+    assert not shown("DeviceOutput")
+    press("OK")
+    assert machine.Proxy.force_device(machine).template == "FORCE({newton:.1f})"
+    menu("Belt machine")
+    type_in("DeviceTemplate", "FORCE(30)")
+    press("OK")  # refused, or told
+    assert "newton" in field("note").text(), field("note").text()
+    press("Cancel")

@@ -124,6 +124,7 @@ def test_changes_may_be_no_file(tmp_path):
 def test_what_cannot_be_written_is_said(tmp_path):
     (tmp_path / "a.src").write_text(KRL.format(""))
     changes = [{"index": 0, "dx_mm": 1.0}]
+    (tmp_path / "no").write_text("a file, in which no other can be")
     with pytest.raises(ProgramError, match="cannot be written"):
         patch(tmp_path / "a.src", changes, tmp_path / "no" / "b.src")
 

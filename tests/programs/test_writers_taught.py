@@ -58,14 +58,14 @@ def test_a_fanuc_program_by_hand(tmp_path):
     write_program(path, None, motions, bases=5, tools=3, digits="robot", force_device=device)
     text = path.read_text()
     rows = text[text.index("/MN") : text.index("/POS")].split("\n")[1:-1]
-    assert [row.strip() for row in rows] == [
-        "1:UFRAME_NUM=5 ;",
-        "2:UTOOL_NUM=3 ;",
-        "3:J P[1] 10% FINE ;",
-        "4:AO[3]=60 ;",
-        "5:L P[2] 50mm/sec CNT100 ;",
-        "6:C P[3]",
-        ":  P[4] 50mm/sec FINE ;",
+    assert [row.partition(":")[2].strip() for row in rows if "!" not in row] == [
+        "UFRAME_NUM=5 ;",
+        "UTOOL_NUM=3 ;",
+        "J P[1] 10% FINE ;",
+        "AO[3]=60 ;",
+        "L P[2] 50mm/sec CNT100 ;",
+        "C P[3]",
+        "P[4] 50mm/sec FINE ;",
     ]
     assert "X = 10.000  mm,  Y = 0.000  mm,  Z = 5.000  mm," in text
     assert "W = 180.000 deg,  P = 0.000 deg,  R = 90.000 deg" in text
@@ -82,7 +82,7 @@ def test_an_inform_job_by_hand(tmp_path):
     device = {"kind": "analog", "output": 2, "scale_per_N": 0.1}
     path = tmp_path / "pass.jbi"
     write_program(path, None, motions, bases=5, tools=3, digits="robot", force_device=device)
-    rows = path.read_text().splitlines()
+    rows = [row for row in path.read_text().splitlines() if not row.startswith("'")]
     assert rows[rows.index("NOP") :] == [
         "NOP",
         "MOVJ C00000 VJ=10.00 PL=0",

@@ -159,6 +159,7 @@ def share_told(line):
     return float(line.partition(" %")[0].rpartition(" ")[2])
 
 
+@pytest.mark.slow
 def test_grind_tells_one_set_of_figures_and_they_are_the_files(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(grinding, "TRIES", 1)
     (tmp_path / "plate.brep").write_text(plate().write_brep())
@@ -192,6 +193,7 @@ def test_grind_tells_one_set_of_figures_and_they_are_the_files(tmp_path, capsys,
     assert cli.main([*begin, "--check", "--wanted", "0"]) == 2
 
 
+@pytest.mark.slow
 def test_plan_reads_the_programs_that_it_wrote(tmp_path, capsys):
     data, file = laid_on(job_of(), tmp_path)
     data["programs"] = [{"file": str(file)}]
@@ -231,6 +233,7 @@ def test_a_coarse_sampling_is_told_and_planned_on_at_half(tmp_path):
         assert f"+-{100 * abs(checked.entry['sampling']):.1f} points" in str(checked.notes[-1])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "program, device",
     [

@@ -7,7 +7,7 @@ from typing import Any
 from ..base import schemas
 from ..engine import InputError
 from ..job.machine import FREE_BELT, PLATEN, SMALL_WHEEL, WHEEL, WHEELS, check_run
-from ..programs.force_device import ForceDevice, of_job
+from ..programs.force_device import ForceDevice, device_of, of_job
 from .belt import Belt
 from .geometry import matrix, placement_to_job
 from .kinds import DocumentObject
@@ -153,6 +153,13 @@ def layers_of(machine: DocumentObject) -> list[Any]:
         return []
 
 
+def check_device(machine: DocumentObject) -> None:
+    """Raises InputError for a force device that cannot be."""
+    given: dict[str, Any] = {}
+    to_job(machine, DEVICE_KEYS, given)
+    device_of(given["belt_machine"]["force_device"])
+
+
 def half_size(machine: DocumentObject) -> float:
     """mm: how far what presses reaches about from the contact, for cameras and arrows; of a wheel its radius."""
     if machine.Kind in WHEELS:
@@ -192,6 +199,7 @@ class BeltMachine(Proxy):
         """Raises InputError for a machine that cannot be; the tree shows it there."""
         with checking(obj):
             check_limits(obj, (*KIND_KEYS[obj.Kind], *KEYS))
+            check_device(obj)
             if obj.Kind != WHEEL:
                 rules = schemas.schema("job")["properties"]["belt_machine"]
                 given = self.to_job(obj)["belt_machine"]

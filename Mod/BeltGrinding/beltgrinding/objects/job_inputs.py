@@ -92,6 +92,7 @@ def fingerprint(job: DocumentObject) -> str:
     """
     data = without_geometry(job)
     data["belt_machine"].pop("belt", None)
+    data["robot"].pop("controller", None)  # plans keep to it, and give the job its numbers
     del data["inspection"]
     stock = required(job, Stock, "stock")
     data["stock"] = stock.Proxy.settings(stock)

@@ -22,7 +22,8 @@ from ..programs.patch.patch import patch
 from ..programs.writers.writer import zones_written
 from ..raster import raster_path as raster
 from . import job_inputs, result_files
-from .job_data import KEYS as JOB_KEYS, children, inspection
+from .belt_machine import BeltMachine
+from .job_data import KEYS as JOB_KEYS, children, inspection, required
 from .kinds import DocumentObject
 from .properties import Key, Output, add_keys, add_outputs, from_job, to_job
 from .proxy import Proxy
@@ -98,7 +99,10 @@ class Plan(Proxy):
     VIEW = "PlanView"
 
     def add_properties(self, obj: DocumentObject) -> None:
+        earlier = "Goal" in obj.PropertiesList and "Timing" not in obj.PropertiesList
         add_keys(obj, KEYS)
+        if earlier:  # a plan of an earlier version: by the job's time law
+            obj.Timing = "job"
         if "LayPasses" not in obj.PropertiesList:
             text = (
                 "the passes are laid anew, too: step-over, run-out, how often they are run through"
@@ -142,7 +146,12 @@ class Plan(Proxy):
 
 def fingerprint(obj: DocumentObject, job: DocumentObject) -> str:
     """Hash of all that a plan depends on."""
-    data = [job_inputs.fingerprint(job), inspection(job), obj.Proxy.settings(obj), obj.LayPasses]
+    settings = obj.Proxy.settings(obj)
+    if settings["timing"] == "robot":
+        settings["controller"] = required(job, BeltMachine, "belt machine").Controller
+    else:
+        del settings["timing"]  # as before there was a choice
+    data = [job_inputs.fingerprint(job), inspection(job), settings, obj.LayPasses]
     return hashlib.sha256(json.dumps(data, sort_keys=True, allow_nan=False).encode()).hexdigest()
 
 
@@ -251,7 +260,9 @@ def store(obj: DocumentObject, job: DocumentObject, found: Found) -> None:
     obj.OldForces = commands.forces.tolist()
     obj.NewForces = commands.written(commands.forces * factor).tolist()
     obj.Zones = np.concatenate([one["zones"] for one in commands.arrays]).tolist()
-    obj.TimeLaw = json.dumps({key: plan.job["simulation"][key] for key in TIME_LAW})
+    obj.TimeLaw = json.dumps(
+        {key: plan.job["simulation"][key] for key in TIME_LAW}, allow_nan=False
+    )
     given = np.concatenate([one["forces"] for one in commands.arrays])
     obj.Kept = tuple(bool(value) for value in (given < 0) & (factor == 1.0))
     obj.Changes = json.dumps(

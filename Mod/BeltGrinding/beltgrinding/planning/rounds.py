@@ -355,7 +355,7 @@ def summary(found: Plan) -> dict[str, Any]:
     forces = found.commands.force(found.factors)
     return {
         "timing": found.settings["timing"],
-        "time_law": found.job["simulation"]["timing"],
+        "time_law": typed(found.job).simulation.timing,
         "controller": robot_time.limits(found.job).controller,
         "better": found.better,
         "before": figures(found.before, found.settings),

@@ -333,9 +333,10 @@ def _with_ramps(piece: Piece, settings: Json, entry: Ramps) -> Piece:
     ramps = entry.ramps(piece["leads"], s[-1])
     if ramps[0] <= 0.0:
         return piece
-    first, last = (_ramp_places(ramp, entry.block) for ramp in ramps)
+    block = min(entry.block, settings["max_distance_mm"])
+    first, last = (_ramp_places(ramp, block) for ramp in ramps)
     more = np.sort(np.concatenate([first, s[-1] - last]))
-    near = 0.5 * min(entry.block, float(ramps.max()))
+    near = 0.5 * min(block, float(ramps.max()))
     more = more[abs(more[:, None] - s[None]).min(axis=1) > near]
     more = more[np.diff(more, prepend=-np.inf) > near]
     return _posed(piece, s, np.sort(np.concatenate([s, more])))
@@ -361,7 +362,7 @@ def _ramp_places(ramp: float, block: float) -> Floats:
 def _spaced(piece: Piece, block: float, settings: Json) -> Piece:
     """The piece with its inner poses ``block`` mm apart at least, as far as it keeps chord_error_mm, max_turn_deg and
     max_distance_mm: those that are nearer are left out, or moved on."""
-    even = math.cos(math.radians(settings["max_turn_deg"]))
+    most = math.radians(settings["max_turn_deg"])
     points, normals, tangents = piece["points"], piece["normals"], piece["tangents"]
     s = _places(points)
     if len(s) < 3 or (np.diff(s) <= 0.0).any():
@@ -372,8 +373,11 @@ def _spaced(piece: Piece, block: float, settings: Json) -> Piece:
         over, way = points[one + 1 : other] - points[one], points[other] - points[one]
         share = np.clip(over @ way / max(float(way @ way), STILL), 0.0, 1.0)
         missed = np.linalg.norm(over - share[:, None] * way, axis=1).max()
-        turns = min(normals[one] @ normals[other], tangents[one] @ tangents[other])
-        free = turns >= even and missed <= settings["chord_error_mm"]
+        # No less than the turn of both together.
+        turn = sum(
+            math.acos(np.clip(axis[one] @ axis[other], -1.0, 1.0)) for axis in (normals, tangents)
+        )
+        free = turn <= most and missed <= settings["chord_error_mm"]
         if free and min(s[k] - before, s[other] - s[k]) < block - STILL:
             if s[other] - before <= settings["max_distance_mm"]:
                 continue

@@ -229,6 +229,7 @@ class BeltMachinePanel(Panel):
         if self.obj.Kind == machines.PLATEN:
             machine["belt_machine"]["platen"]["layers"] = self.layers.values()
         machines.check_run(machine["belt_machine"])
+        machines.check_device(self.obj)
 
     def _check_wheel(self) -> None:
         if self.obj.WheelRadius.Value <= 0:

@@ -54,7 +54,7 @@ SAMPLES = 25_000
 RASTER = {"step_over_share": 0.5, "max_distance_mm": 3.0}
 HEAD = ("before", "one feed", "feeds", "forces", "reached", "fringe", "cut", "rounds", "plan", "s")
 SEARCHED = ("checked", "searched", "searched cut")
-FORCES = {"force_min_N": 5.0, "force_max_N": 60.0}
+FORCES = {"force_min_N": 5.0, "force_max_N": 60.0, "timing": "job"}
 
 
 def uneven(shape, faces, folder):
@@ -106,7 +106,9 @@ def measure(file, faces, stock, search):
     """The figures of HEAD, and where it is searched of SEARCHED."""
     begun = time.perf_counter()
     job = job_of(file, faces, stock)
-    feeds = planning.plan(job, {"check": False}).after.summary["in_tolerance_area_share"]
+    feeds = planning.plan(job, {"check": False, "timing": "job"}).after.summary[
+        "in_tolerance_area_share"
+    ]
     plan = planning.plan(job, {**FORCES, "check": search})
     before, after = plan.before, plan.after
     areas, reached = np.asarray(before.field.areas, dtype=float), plan.why["reached"]

@@ -30,7 +30,7 @@ def main():
         return
     file = plan_bench.PARTS / "blade_marine_upper.iges"
     job = plan_bench.job_of(file, [1], {"allowance_mm": plan_bench.STOCK})
-    commands = Commands(job, rounds.validate({"force_max_N": 60.0}))
+    commands = Commands(job, rounds.validate({"force_max_N": 60.0, "timing": "job"}))
     feeds, ones = commands.feed(), np.ones(len(commands))
     run = runs.run(job, influence=True, forces=True)
     told = {

@@ -120,7 +120,7 @@ def part_of(
     fresh = replace(machine, belt=NEW)
     job = replace(job, belt_machine=fresh)
     result = runs.run(job, context)
-    commands = Commands(job, rounds.validate({}))
+    commands = Commands(job, rounds.validate({"timing": "job"}))
     feeds = commands.feed()
     seconds = commands.seconds(feeds)
     moving = seconds > 0.0

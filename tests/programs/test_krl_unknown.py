@@ -282,3 +282,12 @@ def left(program, truth, changed):
         at, arriving = found + 1, False
     if at < len(truth):
         assert program.problems, changed
+
+
+def test_speeds_of_turning_say_nothing_of_the_path_speed(tmp_path):
+    lin = "LIN {X %d,Y 0,Z 0,A 0,B 0,C 0}\n"
+    body = f"$VEL.ORI1=200\n{lin % 1}$VEL.CP=0.1\n$VEL.ORI1=100\n{lin % 2}"
+    (tmp_path / "a.src").write_text(f"DEF a()\n{body}END\n")
+    program = read_program(tmp_path / "a.src")
+    assert [motion.speed_mm_s for motion in program.motions] == [None, 100.0]
+    assert not program.problems

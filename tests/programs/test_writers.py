@@ -443,3 +443,26 @@ def test_convert_from_the_command_line(tmp_path, capsys):
     assert "--tool" in capsys.readouterr().err
     assert cli.main(["program", "convert", str(new), "-o", str(tmp_path / "p.xyz")]) == 2
     assert "no program is written as '.xyz'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "suffix, set_there",
+    [
+        (
+            ".src",
+            ["$ACC.CP=0.9", "$ACC.ORI1=250", "$ACC.ORI2=250", "$VEL.ORI1=120.5", "$VEL.ORI2=120.5"],
+        ),
+        (".mod", ["PathAccLim TRUE\\AccMax:=0.9,TRUE\\DecelMax:=0.9;", "[50,120.5,5000,1000]"]),
+        (".script", ["a=0.9, v=0.05"]),
+    ],
+)
+def test_the_accelerations_that_feeds_count_on_are_set(tmp_path, suffix, set_there):
+    motions = [dataclasses.replace(m, speed_mm_s=50.0) for m in told_motions()]
+    write_program(tmp_path / f"a{suffix}", None, motions, pace=(900.0, 250.0, 120.5))
+    text = (tmp_path / f"a{suffix}").read_text()
+    assert not [one for one in set_there if one not in text]
+    write_program(tmp_path / f"b{suffix}", None, motions)
+    assert not [one for one in set_there if one in (tmp_path / f"b{suffix}").read_text()]
+    set_and_not = [read_program(tmp_path / f"{name}{suffix}") for name in "ab"]
+    assert_same(*(one.motions for one in set_and_not))
+    assert problem_codes(set_and_not[0]) == problem_codes(set_and_not[1])

@@ -116,9 +116,11 @@ def add_form(command, default="spline"):
 
 def _as_followed(form, job):
     """How ``write_program`` writes passes that were laid or planned for a job."""
+    from ..job import robot_time
     from ..programs.force_device import of_job
 
-    return {"form": form, "digits": "robot", "force_device": of_job(job)}
+    pace = robot_time.limits(job).pace
+    return {"form": form, "digits": "robot", "force_device": of_job(job), "pace": pace}
 
 
 def _add_frames(command):

@@ -44,6 +44,15 @@ class Limits:
     rotation_speed_deg_s: float
     default_zone_mm: float
 
+    @property
+    def pace(self) -> tuple[float, float, float]:
+        """As ``programs.write_program`` takes it."""
+        return (
+            self.path_acceleration_mm_s2,
+            self.angular_acceleration_deg_s2,
+            self.rotation_speed_deg_s,
+        )
+
 
 def limits(job: Job | Json) -> Limits:
     """The ``Limits`` of a validated job. Raises InputError for a controller that is not there."""

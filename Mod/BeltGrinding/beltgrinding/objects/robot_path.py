@@ -16,6 +16,7 @@ from ..base import frames
 from ..base.kinds import Array, Context, Floats, Json
 from ..base.stopping import stoppable
 from ..engine import InputError, core
+from ..job import robot_time
 from ..job.poses import DEFAULT_FEED
 from ..programs.program import Motion
 from ..programs.languages.roll import RULES, lay
@@ -301,6 +302,22 @@ def force_device(obj: DocumentObject) -> ForceDevice | None:
     return None if machine is None else machine.Proxy.force_device(machine)
 
 
+def _pace(obj: DocumentObject) -> tuple[float, float, float] | None:
+    """The accelerations and the speed of turning of a RobotPath's controller, and of what its job says otherwise; None
+    without a belt machine."""
+    if obj.Machine is None:
+        return None
+    job: dict[str, Any] = {"robot": {"controller": obj.Machine.Controller}}
+    group = obj.getParentGroup()
+    if "PathAcceleration" in getattr(group, "PropertiesList", ()):
+        job["simulation"] = {
+            "path_acceleration_mm_s2": group.PathAcceleration.Value,
+            "angular_acceleration_deg_s2": group.AngularAcceleration,
+            "rotation_speed_deg_s": group.RotationSpeed,
+        }
+    return robot_time.limits(job).pace
+
+
 def follow(obj: DocumentObject) -> None:
     """Takes the poses of a RobotPath from its SourceObject. Raises InputError; then nothing is
     changed.
@@ -386,5 +403,6 @@ def write(obj: DocumentObject, file: Path | str, **options: Any) -> Any:
     options.setdefault("form", "spline")
     options.setdefault("digits", "robot")
     options.setdefault("force_device", force_device(obj))
+    options.setdefault("pace", _pace(obj))
     options.setdefault("comment", f"{obj.Label}, {len(motions)} poses")
     return write_program(file, None, motions, **options)

@@ -17,7 +17,7 @@ from .text import DIGITS, ZONE_DIGITS, Digits, rounded
 
 if TYPE_CHECKING:
     from .frames import Frame
-    from .sheet import Sheet
+    from .sheet import Pace, Sheet
 
 NAME = re.compile(r"[A-Za-z]\w{0,23}$", re.ASCII)
 # A Cartesian PTP without status and turn is reached in the posture that the robot happens to have.
@@ -55,6 +55,7 @@ def text(sheet: Sheet) -> bytes:
         "INTERRUPT ON 3",
         "BAS (#INITMOV,0 )",
         f"$APO.CDIS={decimal(sheet.blend_mm, ZONE_DIGITS)}",
+        *_pace(sheet.pace),
         ";ENDFOLD (INI)",
     ]
     blend = decimal(sheet.blend_mm, ZONE_DIGITS)
@@ -110,6 +111,18 @@ def text(sheet: Sheet) -> bytes:
     lines += ["ENDSPLINE"] if inside else []
     lines += ["END", ""]
     return "\r\n".join(lines).encode("ascii")
+
+
+def _pace(pace: Pace | None) -> list[str]:
+    """Statements that set the accelerations, in m/s2 and degrees/s2, and the speeds of turning."""
+    if pace is None:
+        return []
+    angular, turning = decimal(pace.angular_acceleration_deg_s2, 3), decimal(
+        pace.rotation_speed_deg_s, 3
+    )
+    lines = [f"$ACC.CP={decimal(pace.acceleration_mm_s2 / 1000.0, 6)}"]
+    lines += [f"$ACC.ORI{k}={angular}" for k in (1, 2)]
+    return lines + [f"$VEL.ORI{k}={turning}" for k in (1, 2)]
 
 
 def _pose(frame: Floats, digits: Digits) -> str:

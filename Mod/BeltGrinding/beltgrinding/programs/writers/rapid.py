@@ -30,6 +30,7 @@ DECLARED = {"tool": "tool_", "base": "wobj_"}
 # Of frames that nobody has named: the controller has none of these names, and refuses the program.
 LEFT_OUT = {"tool": "tBelt", "base": "wPart"}
 MOVES = {"PTP": "MoveJ", "LIN": "MoveL", "SPL": "MoveL", "CIRC": "MoveC"}
+TURNING = 500.0  # degrees/s, of the speeds that RAPID has names for
 THRESHOLD = 50  # percent of the force, at which FCPress1LStart takes the contact for found
 
 
@@ -50,6 +51,10 @@ def text(sheet: Sheet) -> bytes:
                 lines += _asked_for(frame, name, held)
                 sheet.notes.append(undeclared(frame, name))
     lines += ["  PROC main()", "    ConfL\\Off;", "    ConfJ\\Off;"]
+    if sheet.pace is not None:
+        most = decimal(sheet.pace.acceleration_mm_s2 / 1000.0, 6)
+        lines.append(f"    PathAccLim TRUE\\AccMax:={most},TRUE\\DecelMax:={most};")
+    turning = TURNING if sheet.pace is None else sheet.pace.rotation_speed_deg_s
     if any(step.kind == "SPL" for step in sheet.steps):
         lines.append("    ! RAPID has no splines: their points are joined by lines.")
     places = [
@@ -92,7 +97,7 @@ def text(sheet: Sheet) -> bytes:
             move = "FCPressEnd"
         where = "" if pressed[k] == "end" else f",{rounds}"
         lines.append(
-            f"    {move} {target},{_speed(speed, sheet.digits.speed)}{force}{where},"
+            f"    {move} {target},{_speed(speed, sheet.digits.speed, turning)}{force}{where},"
             f"{names['tool'][step.tool]}\\WObj:={names['base'][step.base]};"
         )
     lines += ["  ENDPROC", "ENDMODULE", ""]
@@ -169,11 +174,12 @@ def _target(place: list[float], turn: list[float], digits: Digits) -> str:
     return f"[[{at}],[{quaternion}]]"
 
 
-def _speed(speed: float, digits: int) -> str:
+def _speed(speed: float, digits: int, turning: float) -> str:
+    """speeddata of mm/s, and degrees/s of turning."""
     number = decimal(speed, digits)
-    if float(number) in SPEEDS:
+    if float(number) in SPEEDS and turning == TURNING:
         return f"v{float(number):.0f}"
-    return f"[{number},500,5000,1000]"
+    return f"[{number},{decimal(turning, 3)},5000,1000]"
 
 
 def _blend(most: float) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from typing import Optional
+from typing import NamedTuple, Optional
 
 import numpy as np
 
@@ -30,6 +30,14 @@ class Step:
     note: str = ""  # what a comment before it says
 
 
+class Pace(NamedTuple):
+    """What a program sets of the robot's time law, where the language has a statement for it."""
+
+    acceleration_mm_s2: float  # along the path
+    angular_acceleration_deg_s2: float
+    rotation_speed_deg_s: float
+
+
 @dataclass
 class Sheet:
     """What the writer of a language gets."""
@@ -51,6 +59,7 @@ class Sheet:
         ""  # "": corners as the motions say; "spline" or "zones": as ``write_program`` takes it
     )
     device: Optional[ForceDevice] = None  # that the program sets its forces by
+    pace: Optional[Pace] = None
     notes: list[Fact] = field(default_factory=list)  # what the program takes for granted
 
     def ways(self) -> tuple[Floats, Floats]:

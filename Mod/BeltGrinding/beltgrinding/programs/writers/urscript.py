@@ -64,6 +64,8 @@ def text(sheet: Sheet) -> bytes:
         pressing.force_mode(sheet, pose) if by_controller else pressing.before(sheet, URSCRIPT, "#")
     )
     blends = _blends(sheet)
+    acceleration = ACCELERATION if sheet.pace is None else sheet.pace.acceleration_mm_s2 / 1000.0
+    accelerated = decimal(acceleration, 6, 1)
     tool = None
     for step, blend, head in zip(sheet.steps, blends, pressed):
         if step.note:
@@ -81,7 +83,7 @@ def text(sheet: Sheet) -> bytes:
             tail = "" if float(tail) == 0.0 else f", r={tail}"
             lines.append(f"  movej({place}, a={JOINT_ACCELERATION}, v={JOINT_SPEED}{tail})")
             continue
-        tail = f"a={ACCELERATION}, v={speed}, r={decimal(blend / 1000.0, 6, 1)}"
+        tail = f"a={accelerated}, v={speed}, r={decimal(blend / 1000.0, 6, 1)}"
         if step.kind == "CIRC":
             lines.append(f"  movec({places[known(step.aux)]}, {place}, {tail}, mode=0)")
         else:

@@ -26,7 +26,7 @@ from . import one_base
 from .frames import Frames, checked
 from .pressing import not_set, settle
 from .read_again import check_forces
-from .sheet import Sheet, Step
+from .sheet import Pace, Sheet, Step
 from .spline import FORMS, fit_zones
 from .text import DIGITS, printable
 from .turned import resolved
@@ -60,6 +60,7 @@ def write_program(
     form: str = "",
     digits: str = "fine",
     force_device: Device = None,
+    pace: tuple[float, float, float] | None = None,
 ) -> list[Fact]:
     """Writes a robot program to ``path``, whole or not at all. Raises ProgramError.
 
@@ -86,6 +87,8 @@ def write_program(
     digits: "fine", and a CSV's: poses read back within 1e-6 mm and 1e-6 degrees; "robot": 0.001 mm, 0.001 degrees, 0.1 mm/s.
     force_device: what sets the pressing force (``force_device.device_of``), for path motions; None: comments tell it.
     What is written is read again then, and refused unless each motion has its force.
+    pace: (acceleration along the path, mm/s2, angular acceleration, degrees/s2, speed of turning, degrees/s) that the
+    program sets as far as its language can, since its feeds count on them; None: it leaves them as they are.
 
     A motion without a pose (a joint target, a gap) becomes a comment, and the next pose is reached
     by PTP: nothing is ground on a way that is not known.
@@ -139,6 +142,7 @@ def write_program(
     pressed: list[Fact] = []
     if suffix != ".csv":  # which no controller follows
         sheet.form, sheet.digits, sheet.device = form, DIGITS[digits], device_of(force_device)
+        sheet.pace = None if pace is None else Pace(*pace)
         fit_zones(sheet)
         pressed = [*settle(sheet), *not_set(sheet)]
     data = writer(sheet)

@@ -53,7 +53,7 @@ class Settings(Parts):
         self.values.assign(name, steps, value)
         if name in FRAMES:
             self.settle_frame(line, name, text)
-        elif name == "$vel":
+        elif name == "$vel" and steps[:1] in ((), ("cp",)):  # the others are of turning
             self.settle_speed(line)
         elif name == "$ipo_mode" and isinstance(self.values.peek(name), Lost):
             self.unknown(line, name, self.values.peek(name))

@@ -58,7 +58,7 @@ def prepared():
     doc = job.Document
     read, ended = robot_path.read_program, []
 
-    def slow(path, *roll):
+    def slow(path, *roll, **keys):
         end = time.monotonic() + 30
         try:
             while time.monotonic() < end:
@@ -69,7 +69,7 @@ def prepared():
         ended.append("read")
         return read(path)
 
-    def deaf(path, *roll):
+    def deaf(path, *roll, **keys):
         time.sleep(3)  # as a library that looks at nothing
         ended.append("deaf")
         return read(path)
@@ -128,8 +128,8 @@ def test_the_window_lives_while_a_long_program_is_read():
     timer.start(20)
     done = []
 
-    def measured(path, *roll):
-        program = read(path, *roll)
+    def measured(path, *roll, **keys):
+        program = read(path, *roll, **keys)
         done.append(time.monotonic())
         return program
 

@@ -19,6 +19,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 SHARED = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared"))
+PLACES = ("frames", "contacts")
 PARTS = [("crank_arm.brep", 5), ("pump_cover.brep", 1), ("blade_marine_upper.iges", 1)]
 TOLERANCE = 0.05  # mm
 
@@ -46,8 +47,15 @@ def plate(**keys):
     )
 
 
+def longer(laid, feed):
+    """How many times longer the passes last than at an even feed of the contact, where the robot keeps to its blocks."""
+    on = laid["contact"][1:] & laid["contact"][:-1]
+    ways = {k: np.linalg.norm(np.diff(laid[k][:, :3, 3], axis=0), axis=1)[on] for k in PLACES}
+    return (ways["frames"] / laid["feeds"][1:][on]).sum() / (ways["contacts"].sum() / feed)
+
+
 def ground(design, machine, settings, spacing, stock):
-    """Share in tolerance and mean deviation of a raster with these settings."""
+    """Share in tolerance and mean deviation of a raster with these settings, and how much ``longer`` it lasts."""
     job = {
         "schema": 1,
         "design": design,
@@ -62,7 +70,8 @@ def ground(design, machine, settings, spacing, stock):
     arrays = {key: laid[key] for key in ("frames", "feeds", "forces", "rapid", "lines")}
     arrays["zones"] = np.full(len(laid["feeds"]), -1.0)
     summary = beltgrinding.run({**job, "programs": [{"poses": list_poses(arrays)}]}).summary
-    return summary["in_tolerance_area_share"], summary["deviation_mm"]["mean"]
+    lasts = longer(laid, settings.get("feed_mm_s", raster_path.validate({})["feed_mm_s"]))
+    return summary["in_tolerance_area_share"], summary["deviation_mm"]["mean"], lasts
 
 
 @pytest.mark.slow
@@ -89,16 +98,18 @@ def test_a_proposal_takes_the_allowance_off_and_beats_the_defaults(name, face):
         },
     }
     spacing = max(found["spacing_mm"], math.sqrt(found["area_mm2"] / 30_000))
-    share, mean = ground(design, machine, settings, spacing, stock)
+    share, mean, lasts = ground(design, machine, settings, spacing, stock)
     try:
-        before, mean_before = ground(design, {}, {}, spacing, stock)
+        before, mean_before, _ = ground(design, {}, {}, spacing, stock)
     except InputError:  # the large wheel of before lays no pass at all
         before, mean_before = 0.0, 0.3
     print(
-        f"{name}: proposed {share:.0%}, mean {mean:+.3f} mm; defaults {before:.0%}, {mean_before:+.3f}"
+        f"{name}: proposed {share:.0%}, mean {mean:+.3f} mm, {lasts:.2f} times as long; "
+        f"defaults {before:.0%}, {mean_before:+.3f}"
     )
     left = 0.3 * (1.0 - found["ground_share"])
-    assert abs(mean - left) < 0.03
+    # At turns too sharp for the robot's blocks the passes are slower, and remove more: at most as they last longer.
+    assert 0.3 * (1.0 - lasts) - 0.03 < mean - left < 0.03
     assert share > 0.65 * found["ground_share"] ** 2 and share > before + 0.3
 
 

@@ -114,11 +114,14 @@ def test_a_plan_that_searches_coarsely_tells_figures_of_the_full_resolution(plan
     assert summary["after"]["rms_mm"] <= summary["before"]["rms_mm"]
 
 
-def test_the_rounds_say_that_they_are_coarse(planned):
-    from beltgrinding.cli.plan import line
+def test_the_rounds_say_that_they_are_coarse(planned, capsys):
+    from beltgrinding.cli.rounds_table import Table
 
-    lines = [line(one) for one in planned[1]]
-    assert lines[0].startswith("coarse: ") and not lines[-1].startswith("coarse")
+    table = Table()
+    for one in planned[1]:
+        table.told(one)
+    _, first, *_, last = capsys.readouterr().out.splitlines()
+    assert first.endswith("  coarse") and "coarse" not in last
 
 
 def test_a_coarse_job_is_planned_in_full():

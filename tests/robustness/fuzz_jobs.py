@@ -36,7 +36,7 @@ for folder in (HERE, HERE.parents[1] / "Mod" / "BeltGrinding"):
 
 LIMIT = 120.0  # s of processor time for one job, sanitizers included
 STARVED = 10
-PATIENCE = 10.0  # s of processor time after which a job is asked to end
+PATIENCE = 30.0  # s of processor time after which a job is asked to end, and within which it does
 MEMORY = 6 << 30  # bytes of address space of a worker
 KINDS = ("parts", "valid", "nearly")
 UNLIKE = (

@@ -262,5 +262,8 @@ def png(pixels: Array) -> bytes:
     """Bytes of a PNG file of (rows, columns, 3) uint8, which says by what it was made."""
     file, about = io.BytesIO(), PngInfo()
     about.add_text("Software", "BeltGrinding")
-    Image.fromarray(pixels).save(file, "PNG", pnginfo=about, compress_level=PNG_LEVEL)
+    try:
+        Image.fromarray(pixels).save(file, "PNG", pnginfo=about, compress_level=PNG_LEVEL)
+    except OSError as error:  # of zlib, which tells so that it has no memory; no disk is written to
+        raise MemoryError(str(error)) from None
     return file.getvalue()

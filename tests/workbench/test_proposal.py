@@ -171,7 +171,7 @@ def test_a_belt_takes_the_allowance_off(machine):
     settings = {"along": "direction"}
     for key in ("direction", "step_over_share", "feed_mm_s", "approach_feed_mm_s"):
         settings[key] = found[key]
-    share, mean = ground(plate()["design"], given, settings, 1.0, stock)
+    share, mean, _ = ground(plate()["design"], given, settings, 1.0, stock)
     print(f"proposed {share:.0%}, mean {mean:+.3f} mm")
     assert abs(mean - 0.1 * (1.0 - found["ground_share"])) < 0.015
 

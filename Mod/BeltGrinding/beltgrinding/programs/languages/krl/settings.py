@@ -39,6 +39,7 @@ BAS_SETS: dict[str, tuple[str, ...]] = {
     ),
 }
 ALL = ("$vel", "$apo", *FDAT)
+OF_TURNING = (("ori1",), ("ori2",))  # parts of $VEL that say nothing of the path speed
 
 
 class Settings(Parts):
@@ -53,7 +54,7 @@ class Settings(Parts):
         self.values.assign(name, steps, value)
         if name in FRAMES:
             self.settle_frame(line, name, text)
-        elif name == "$vel" and steps[:1] in ((), ("cp",)):  # the others are of turning
+        elif name == "$vel" and steps not in OF_TURNING:
             self.settle_speed(line)
         elif name == "$ipo_mode" and isinstance(self.values.peek(name), Lost):
             self.unknown(line, name, self.values.peek(name))

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import FreeCAD
 import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
@@ -358,3 +359,5 @@ def test_cancel_keeps_what_is_finished():
     press("Run")
     wait(lambda: study.RunsDone == 40, 300)
     press("Close")
+    # An undo step in which nothing has changed would go on, and take in what is done to other documents.
+    assert FreeCAD.getActiveTransaction() is None

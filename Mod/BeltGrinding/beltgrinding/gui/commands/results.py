@@ -8,6 +8,7 @@ from ...objects import api, deviation, plan, study
 from ...objects.job_data import child
 from ...objects.kinds import DocumentObject
 from ..common.compat import translate
+from ..common.transaction import commit
 from ..panels.panel import edit
 from .base import active_job, make, make_once
 from .set_up import new_job
@@ -47,7 +48,7 @@ def grind_faces() -> None:
         job = new_job()
         if job is None:
             return
-        job.Document.commitTransaction()
+        commit(job.Document)
 
     def passes() -> DocumentObject:
         plan.passes_of(job)

@@ -16,6 +16,7 @@ from ...objects.kinds import DocumentObject
 from ...simulation import run as runs
 from .compat import QtCore, translate
 from .kinds import Context, Done, Told, Widget
+from .transaction import abort, commit
 
 if TYPE_CHECKING:
     from ...engine import core
@@ -230,8 +231,8 @@ class Runner(Background):
         self.document.openTransaction(name)
         try:
             made = write()
-            self.document.commitTransaction()
+            commit(self.document)
             return made
         except BaseException:
-            self.document.abortTransaction()
+            abort(self.document)
             raise

@@ -5,8 +5,27 @@ from __future__ import annotations
 from types import TracebackType
 from typing import Any
 
+import FreeCAD
+
 from ...objects.kinds import Document
 from .messages import report
+
+
+def commit(document: Document) -> None:
+    """Ends the undo step that is open. FreeCAD closes one only in a document that it has changed: else it stays open for
+    all documents, and takes in what the next command does there."""
+    if document.HasPendingTransaction:
+        document.commitTransaction()
+    else:
+        FreeCAD.closeActiveTransaction(False)
+
+
+def abort(document: Document) -> None:
+    """Takes back the undo step that is open, and ends it, as ``commit``."""
+    if document.HasPendingTransaction:
+        document.abortTransaction()
+    else:
+        FreeCAD.closeActiveTransaction(True)
 
 
 class transaction:
@@ -30,12 +49,12 @@ class transaction:
     ) -> bool:
         if kind is None:
             if not self.panel:
-                self.document.commitTransaction()
+                commit(self.document)
             return False
         self.failed = True
         from ...engine import Cancelled  # not above, as in messages
 
-        self.document.abortTransaction()
+        abort(self.document)
         if issubclass(kind, Cancelled):
             return True  # whoever cancels knows
         if issubclass(kind, Exception):

@@ -21,6 +21,7 @@ from ..common.kinds import QtEvent, View3D, Widget
 from ..common.messages import error_text
 from ..common.save_dialog import file_to_write
 from ..common.theme import warning_style
+from ..common.transaction import commit
 from .object_dock import ObjectDock
 from ..widgets.steady import steady
 
@@ -230,7 +231,7 @@ class SectionDock(ObjectDock):
 
     def _commit(self, obj: DocumentObject) -> None:
         if self.opened and not self.slider.isSliderDown():
-            obj.Document.commitTransaction()
+            commit(obj.Document)
             self.opened = False
 
     def change(self, **values: Any) -> None:

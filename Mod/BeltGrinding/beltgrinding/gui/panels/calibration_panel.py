@@ -20,6 +20,7 @@ from ..common.kinds import Buttons, Context, Json, Layout, Table, Widget
 from ..common.messages import error_text
 from ..common.runner import Background
 from ..common.save_dialog import file_to_write
+from ..common.transaction import abort, commit
 from ..widgets.form import MINIMUM_WIDTH
 
 WIDTH = 210  # pixels of the plot in the panel, which must fit the combo view as it comes
@@ -277,9 +278,9 @@ class CalibrationPanel:
         try:
             properties.from_job(self.job, job_data.KEYS, {"law": known(self.result)["law"]})
             document.recompute()
-            document.commitTransaction()
+            commit(document)
         except Exception:
-            document.abortTransaction()
+            abort(document)
             raise
         self.state.setText(
             translate("BeltGrinding", "{} uses the calibrated law.").format(self.job.Label)

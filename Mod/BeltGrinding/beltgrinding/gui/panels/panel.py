@@ -14,6 +14,7 @@ from ..common.icons import qicon
 from ..common.kinds import Buttons
 from ..common.messages import error_text
 from ..common.theme import warning_style
+from ..common.transaction import abort, commit
 from ..widgets.fold import slim
 from ..widgets.form import Form
 
@@ -82,7 +83,7 @@ class Panel:
         try:
             self.end()
             if not Gui.Control.activeDialog():  # or the step is another panel's by now
-                self.document.commitTransaction()
+                commit(self.document)
         except ReferenceError:
             pass  # the document was closed with it
 
@@ -102,13 +103,13 @@ class Panel:
         self.apply()
         self.end()
         self.document.recompute()
-        self.document.commitTransaction()
+        commit(self.document)
         _leave(self.document)
         return True
 
     def reject(self) -> bool:
         self.end()
-        self.document.abortTransaction()  # before leaving: resetEdit commits what is open
+        abort(self.document)  # before leaving: resetEdit commits what is open
         _leave(self.document)
         self.document.recompute()
         return True

@@ -19,7 +19,7 @@ from ..common.compat import QtGui, translate
 from ..common.kinds import Widget
 from ..common.messages import error_text
 from ..common.plan_runner import PlanRunner, words
-from ..common.transaction import transaction
+from ..common.transaction import commit, transaction
 from ..widgets import kept_motions
 from ..widgets.fold import Fold, slim
 from ..widgets.form import Form
@@ -303,7 +303,7 @@ class PlanPanel(RunPanel):
         self.document.openTransaction(translate("BeltGrinding", "Settings of the plan"))
 
     def _commit(self) -> None:
-        self.document.commitTransaction()
+        commit(self.document)
 
     def _arrange(self, running: bool) -> None:
         super()._arrange(running)

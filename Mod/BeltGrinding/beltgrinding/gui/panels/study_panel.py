@@ -17,6 +17,7 @@ from ..common.kinds import Json, Widget
 from ..common.messages import error_text
 from ..common.report_language import words
 from ..common.study_runner import StudyRunner
+from ..common.transaction import commit
 from ..widgets.best_form import BestForm
 from ..widgets.correlation_rows import CorrelationRows
 from ..widgets.fold import Fold, slim
@@ -302,7 +303,7 @@ class StudyPanel(RunPanel):
         self.document.openTransaction(translate("BeltGrinding", "Settings of the study"))
 
     def _commit(self) -> None:
-        self.document.commitTransaction()
+        commit(self.document)
 
     def _arrange(self, running: bool) -> None:
         super()._arrange(running)

@@ -363,3 +363,16 @@ def test_the_law_the_belt_and_the_uncertainty():
     assert doc.Belt.WorkDone == 0 and doc.Belt.RemainingCut == 100
     press("Cancel")
     assert doc.getObject("Belt") is None
+
+
+def test_cancel_leaves_other_documents_alone():
+    """FreeCAD has one undo step for all documents: a panel's takes in what a macro does elsewhere meanwhile."""
+    job = prepared().job
+    job.Document.commitTransaction()
+    assert job.ViewObject.Proxy.doubleClicked(job.ViewObject)
+    settle()
+    other = FreeCAD.newDocument("Other")
+    other.addObject("Part::Feature", "Kept")
+    FreeCAD.setActiveDocument(job.Document.Name)
+    press("Cancel")
+    assert other.getObject("Kept") is not None and FreeCAD.getActiveTransaction() is None

@@ -21,11 +21,12 @@ def commit(document: Document) -> None:
 
 
 def abort(document: Document) -> None:
-    """Takes back the undo step that is open, and ends it, as ``commit``."""
+    """Takes back what the undo step that is open has changed in ``document``, and ends it. Where it has changed nothing
+    there it is ended only: what it holds of other documents is no panel's to take back."""
     if document.HasPendingTransaction:
         document.abortTransaction()
     else:
-        FreeCAD.closeActiveTransaction(True)
+        commit(document)
 
 
 class transaction:

@@ -13,15 +13,13 @@ string(REGEX MATCH "<date>([^<]+)<" matched "${package_xml}")
 execute_process(COMMAND date --utc --rfc-email --date=${CMAKE_MATCH_1} OUTPUT_VARIABLE package_date
                 OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
 
-foreach(file changelog copyright beltgrind beltgrind.1 postinst prerm postrm)
+foreach(file changelog copyright beltgrind postinst prerm postrm)
   configure_file(cmake/debian/${file}.in ${package_files}/${file} @ONLY
                  FILE_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
                                   WORLD_READ WORLD_EXECUTE)
 endforeach()
-foreach(file changelog beltgrind.1)
-  execute_process(COMMAND gzip -9nc ${package_files}/${file} OUTPUT_FILE ${package_files}/${file}.gz
-                  COMMAND_ERROR_IS_FATAL ANY)
-endforeach()
+execute_process(COMMAND gzip -9nc ${package_files}/changelog OUTPUT_FILE ${package_files}/changelog.gz
+                COMMAND_ERROR_IS_FATAL ANY)
 # What depends on the machine belongs into /usr/lib; FreeCAD's Mod folder gets a link to it.
 foreach(module ${modules})
   set(file ${module}${PYTHON_MODULE_EXTENSION})
@@ -29,12 +27,23 @@ foreach(module ${modules})
   install(FILES ${package_files}/${file} DESTINATION ${package_mod} ${as_deb})
 endforeach()
 file(CREATE_LINK ../../freecad/Mod/BeltGrinding/docs ${package_files}/manual SYMBOLIC)
+# `import beltgrinding` works in the system's Python.
+file(CREATE_LINK ../../../share/freecad/Mod/BeltGrinding/beltgrinding ${package_files}/beltgrinding SYMBOLIC)
 
 install_workbench(${package_mod} ${as_deb})
 install(TARGETS ${modules} beltgrinding_cad_reader LIBRARY DESTINATION lib/beltgrinding ${as_deb}
         RUNTIME DESTINATION lib/beltgrinding ${as_deb})
 install(PROGRAMS ${package_files}/beltgrind DESTINATION bin ${as_deb})
-install(FILES ${package_files}/beltgrind.1.gz DESTINATION share/man/man1 ${as_deb})
+install(FILES ${package_files}/beltgrinding DESTINATION lib/python3/dist-packages ${as_deb})
+install(CODE "execute_process(COMMAND ${PROJECT_SOURCE_DIR}/cmake/debian/lookup.sh ${Python_EXECUTABLE} \
+${PROJECT_SOURCE_DIR}/Mod/BeltGrinding ${package_files} COMMAND_ERROR_IS_FATAL ANY)" ${as_deb})
+install(DIRECTORY ${package_files}/man/ DESTINATION share/man/man1 ${as_deb})
+install(FILES ${package_files}/completion/bash DESTINATION share/bash-completion/completions
+        RENAME beltgrind ${as_deb})
+install(FILES ${package_files}/completion/zsh DESTINATION share/zsh/vendor-completions
+        RENAME _beltgrind ${as_deb})
+install(FILES ${package_files}/completion/fish DESTINATION share/fish/vendor_completions.d
+        RENAME beltgrind.fish ${as_deb})
 install(FILES ${package_files}/copyright ${package_files}/manual DESTINATION ${package_doc} ${as_deb})
 install(FILES ${package_files}/changelog.gz DESTINATION ${package_doc} RENAME changelog.Debian.gz
         ${as_deb})
@@ -69,7 +78,7 @@ math(EXPR next_python "${Python_VERSION_MINOR} + 1")
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "freecad, python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), \
 python3 (<< ${Python_VERSION_MAJOR}.${next_python}), python3-numpy, python3-jsonschema, python3-matplotlib, \
 python3-pil, libjs-three")
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "calculix-ccx, python3-dask, python3-distributed, python3-openturns")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "calculix-ccx, weasyprint, python3-dask, python3-distributed, python3-openturns")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${package_files}/postinst ${package_files}/prerm
     ${package_files}/postrm)

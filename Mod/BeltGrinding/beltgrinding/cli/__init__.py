@@ -5,7 +5,6 @@ error), 130 interrupted. How scripts read the
 errors: docs/job-file.md.
 """
 
-import argparse
 import contextlib
 import json
 import os
@@ -23,6 +22,7 @@ from . import (
     interrupts,
     inspect,
     lists,
+    lookup,
     measure,
     plan,
     press,
@@ -33,7 +33,8 @@ from . import (
     verify,
     view,
 )
-from .messages import LANGUAGES, Messages
+from .messages import Messages
+from .parser import PROGRAM, CommandLine
 
 # Each has ``add(commands)``, which gives every command of its topic a function ``do(arguments)``. In
 # these functions stand the imports that need the compiled core.
@@ -55,77 +56,13 @@ TOPICS = (
     report,
     view,
     lists,
+    lookup,
 )
 
 
-JSON_ERRORS = "--json-errors"
-ALL = "--all"
-
-
-LARGEST, SMALLEST = 1e15, 1e-15  # numbers of the command line
-
-
-def _number(kind):
-    """A number that something can be: argparse tells of ValueErrors."""
-
-    def read(text):
-        value = kind(text)
-        if value != 0 and not SMALLEST <= abs(value) <= LARGEST:  # NaN is neither
-            raise ValueError(text)
-        return value
-
-    return read
-
-
-class _Parser(argparse.ArgumentParser):
-    """Takes ``--json-errors`` and ``--all`` before and after the command; its own errors are JSON then, too."""
-
-    def __init__(self, *arguments, **options):
-        super().__init__(*arguments, **options)
-        self.add_argument(
-            JSON_ERRORS,
-            action="store_true",
-            default=argparse.SUPPRESS,
-            help="an error as one line of JSON: its code, message, culprit and arguments",
-        )
-        self.add_argument(
-            ALL,
-            action="store_true",
-            dest="everything",
-            default=argparse.SUPPRESS,
-            help="each warning in a line of its own; many of a kind are told in one",
-        )
-        self.as_json = False
-        self.register("type", float, _number(float))
-        self.register("type", int, _number(int))
-
-    def parse_known_args(self, args=None, namespace=None):
-        self.as_json = JSON_ERRORS in (sys.argv[1:] if args is None else args)
-        return super().parse_known_args(args, namespace)
-
-    def error(self, message):
-        if not self.as_json:
-            super().error(message)
-        data = {"code": "cli.usage", "message": f"{self.prog}: {message}", "culprit": {}}
-        data.update(arguments={"reason": message}, context=[], remarks=[])
-        self.exit(2, json.dumps({"error": data}, allow_nan=False) + "\n")
-
-
-def _parser():
-    parser = _Parser(
-        prog="beltgrind", description="Simulates robotic belt grinding without FreeCAD."
-    )
-    parser.add_argument("--version", action="store_true", help="print versions and exit")
-    parser.add_argument(
-        "--language",
-        choices=LANGUAGES,
-        dest="message_language",
-        help="of errors and warnings (default: that of the locale, else en)",
-    )
-    commands = parser.add_subparsers(dest="command", metavar="COMMAND")
-    for topic in TOPICS:
-        topic.add(commands)
-    return parser
+def command_line():
+    """The parser of all commands."""
+    return CommandLine(TOPICS)
 
 
 def main(argv=None):
@@ -157,10 +94,17 @@ def process(handler=None):
 
 
 def _main(argv, messages):
-    arguments = _parser().parse_args(argv)
+    parser = command_line()
+    arguments = parser.parse_args(argv)
     messages.set(arguments.message_language, getattr(arguments, "json_errors", False))
     messages.everything = getattr(arguments, "everything", False)
     arguments.messages = messages
+    if hasattr(arguments, "at_once"):  # what needs no core
+        arguments.at_once(parser, arguments)
+        return 0
+    if arguments.command is None and not (arguments.version or arguments.versions):
+        parser.print_help(sys.stderr)
+        return 2
     try:
         from ..engine import Cancelled, InputError, core
     except ImportError as error:
@@ -170,10 +114,9 @@ def _main(argv, messages):
         return 2
     try:
         if arguments.version:
+            print(f"{PROGRAM} {core.versions()['beltgrinding']}")
+        elif arguments.versions:
             print(json.dumps(core.versions(), allow_nan=False))
-        elif arguments.command is None:
-            _parser().print_usage(sys.stderr)
-            return 2
         else:
             arguments.status = 0  # a command may set it
             arguments.do(arguments)

@@ -1,5 +1,5 @@
-"""Run by the FreeCAD of a fresh system: the workbench is there, the example blade is ground, the
-manual opens. Ends FreeCAD with a status; report.txt in the home says what was seen.
+"""Run by the FreeCAD of a fresh system: the workbench is there; the example tap is ground, planned and reported, and
+the manual opens. Ends FreeCAD with a status; report.txt in the home says what was seen.
 """
 
 import os
@@ -7,7 +7,7 @@ import sys
 import traceback
 from pathlib import Path
 
-MOD = Path("/usr/share/freecad/Mod/BeltGrinding")
+QUICK = {"Rounds": 1, "Check": False}
 
 
 def work():
@@ -21,11 +21,13 @@ def work():
     Gui.activateWorkbench("BeltGrindingWorkbench")
     import beltgrinding
 
-    assert Path(beltgrinding.__file__).parents[1] == MOD, beltgrinding.__file__
-    hands.menu("Example: compressor blade")
+    mod = Path(beltgrinding.__file__).resolve().parents[1]
+    assert mod.parts[-2:] == ("Mod", "BeltGrinding"), mod
+    assert Path(beltgrinding.core.__file__).parent.samefile(mod), beltgrinding.core.__file__
+    hands.menu("Example: mixer tap")
     doc = FreeCAD.ActiveDocument
     hands.menu("Simulate")
-    hands.wait(lambda: doc.getObject("Simulation") is not None, 300)
+    hands.wait(lambda: doc.getObject("Simulation") is not None, 600)
     hands.press("Deviation")
     deviation = doc.Deviation
     assert deviation.ViewObject.Coloring
@@ -33,8 +35,19 @@ def work():
     hands.press("OK")
     hands.menu("Help")
     assert "tutorial" in hands.field("BeltGrinding_ManualView").toPlainText().lower()
+
+    job = doc.BeltGrindingJob
+    report = Path.home() / "tap.html"
+    beltgrinding.write_report(job, report)
+    page = report.read_text(encoding="utf-8")
+    assert "THREE" in page and "REVISION" in page, "the report has no 3D view"
+    plan = beltgrinding.make_plan(job, **QUICK)
+    scan = beltgrinding.engine.library.extension("beltgrinding_scan")
     version = ".".join(FreeCAD.Version()[:2])
-    return f"FreeCAD {version}: {deviation.InTolerance:.1f} % of the blade in tolerance"
+    return (
+        f"FreeCAD {version}, Python {sys.version.split()[0]}: the tap has {deviation.InTolerance:.1f} % in tolerance, "
+        f"{plan.InTolerance:.1f} % as planned; report of {len(page) / 1e6:.1f} MB; {scan.__name__} is there"
+    )
 
 
 status, report = 1, ""

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from .base import messages
+from .base import messages, vendored
 from .base.kinds import Context, Json
 from .base.resources import documentation, resources
 from .geometry import body_names
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from .simulation.result import Result
     from .studies.making import Study
     from .studies.sorting import Batch
+
+vendored.offer()
 
 # Taken from the core when first asked for: without a core that fits, the workbench must still be able
 # to say so.

@@ -1,4 +1,4 @@
-"""Where the folders of a release lie, installed or in a checkout."""
+"""Where the folders of a release lie: beside the package, within it (a wheel), or in a checkout."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def documentation() -> Path:
 
 def _folder(name: str) -> Path:
     package = Path(__file__).resolve().parents[1]
-    for folder in (package.parent / name, package.parents[2] / name):
+    for folder in (package / name, package.parent / name, package.parents[2] / name):
         if folder.is_dir():
             return folder
     raise FileNotFoundError(f"The folder {name} is missing; install the workbench again.")

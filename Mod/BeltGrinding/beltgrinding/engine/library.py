@@ -19,16 +19,16 @@ NAME = "beltgrinding_core"
 
 
 def places() -> list[Path]:
-    """Folders in which a core may lie: installed beside this package, or a checkout's build."""
+    """Folders in which a core may lie: beside this package, within it (a wheel), or a checkout's build."""
     package = Path(__file__).resolve().parents[1]
-    found = [package.parent, package.parents[2] / "build" / "release" / "python"]
+    found = [package.parent, package, package.parents[2] / "build" / "release" / "python"]
     if "BELTGRINDING_BUILD" in os.environ:
         found.insert(0, Path(os.environ["BELTGRINDING_BUILD"]) / "python")
     return found
 
 
 def built_for(core: Path) -> dict[str, str]:
-    """What a core was built for: {"system", "python", "opencascade"}, or {} where nobody says."""
+    """What a core was built for: {"system", "python", "opencascade"}, the last not where it brings its own; {} where nobody says."""
     try:
         told = core.with_name(core.name + ".json").read_text(encoding="utf-8")
         built: dict[str, str] = json.loads(told)
@@ -81,10 +81,10 @@ def message(reason: object) -> str:
         lines += ["", "The cores that are installed are for", *told]
     lines += [
         "",
-        "What to do: on Debian install the .deb of your release, which brings all libraries it "
-        "needs (apt install ./beltgrinding_*.deb), and use Debian's own FreeCAD. Anywhere else "
-        "build the core for your FreeCAD from the sources: tools/install. Both are told in "
-        "docs/install.md.",
+        "What to do: with a FreeCAD whose Python is 3.11 or 3.13, on Linux and an x86-64 processor, "
+        "install the portable package (BeltGrinding-*-linux-x86_64.zip), or on Debian the .deb of "
+        "your release. Anywhere else build the core for your FreeCAD from the sources: "
+        "tools/install. All are told in docs/install.md.",
     ]
     return "\n".join(lines)
 
@@ -94,8 +94,8 @@ def _cores(place: Path) -> list[Path]:
 
 
 def _words(one: dict[str, str]) -> str:
-    python, opencascade = one.get("python", "?"), one.get("opencascade", "?")
-    return f"{one.get('system', '?')}: Python {python}, OpenCASCADE {opencascade}"
+    words = f"{one.get('system', '?')}: Python {one.get('python', '?')}"
+    return words + (f", OpenCASCADE {one['opencascade']}" if "opencascade" in one else "")
 
 
 def _check_opencascade(built: dict[str, str], core: Path) -> None:

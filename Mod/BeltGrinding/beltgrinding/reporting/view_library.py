@@ -1,4 +1,5 @@
-"""three.js, with which a browser draws the 3D view: Debian's libjs-three, read when a page is written."""
+"""three.js, with which a browser draws the 3D view, read when a page is written: Debian's libjs-three, or the copy in the
+portable package."""
 
 from __future__ import annotations
 
@@ -7,10 +8,12 @@ import re
 from pathlib import Path
 from typing import NamedTuple
 
+from ..base import vendored
 from ..base.resources import resources
 from ..engine import InputError
 
 PLACES = (
+    str(vendored.FOLDER / "three.min.js"),
     "/usr/share/javascript/three/three.min.js",
     "/usr/share/nodejs/three/build/three.min.js",
 )

@@ -59,8 +59,18 @@ def test_too_much_stock_for_the_least_feed_repeats_the_passes():
     assert len(poses) == len(found.laid["frames"]) and len(poses) % repeats == 0
 
 
-def test_forces_go_down_only_unless_asked():
+def test_without_a_device_the_force_stays():
     found = grinding.grind(job_of(), PASSES, QUICK)
+    assert set(found.plan.factors) == {1.0}
+    assert set(found.laid["forces"]) == {-1.0}
+    job = found.plan.job["programs"][0]["poses"]
+    assert {one.get("force_N", 30.0) for one in job} <= {30.0}
+
+
+def test_forces_go_down_only_unless_asked():
+    device = {"kind": "analog", "greatest_N": 60.0, "scale_per_N": 0.01}
+    found = grinding.grind(job_of(force_device=device), PASSES, QUICK)
+    assert found.plan.factors.min() < 1.0 and min(found.laid["forces"]) < 30.0
     forces = found.plan.commands.force(found.plan.factors)
     assert forces.max() <= 30.0 + 1e-9 and found.plan.factors.min() >= grinding.GENTLER - 1e-9
     position = grinding._with_forces(typed(job_of(control="position")), rounds.validate({}))

@@ -19,6 +19,7 @@ from ..inspection import verdict as verdicts
 from ..job import poses
 from ..job.settings import Job
 from ..job.typed import typed
+from ..programs.force_device import of_job
 from ..raster import raster_path
 from ..simulation import convergence
 from . import reasons, rounds
@@ -60,8 +61,8 @@ def grind(
     zones: Callable[[dict[str, Any]], Floats] | None = None,
 ) -> Ground:
     """Lays passes on the faces of a validated job, whose own programs do not matter, and plans their feeds, and forces
-    if the machine keeps a force: down to ``GENTLER`` of the job's where ``force_min_N`` is not given, never up unless
-    ``force_max_N`` is. ``raster_settings``: where the search begins; ``settings``: of the plan; ``told(dict)``: as
+    if the machine has a force device: down to ``GENTLER`` of the job's where ``force_min_N`` is not given, never up unless
+    ``force_max_N`` is. Without a device the force stays, unless one of the two is given. ``raster_settings``: where the search begins; ``settings``: of the plan; ``told(dict)``: as
     ``tried``, then as rounds of the plan; ``zones(path)``: (poses,) mm, -1: the job's default, as the program's file will
     have them; without it those of the raster.
 
@@ -121,10 +122,17 @@ def grind(
 def _with_forces(job: Job, settings: Json) -> dict[str, Any]:
     settings = dict(settings)
     machine = job.belt_machine
-    if machine.control == "force" and settings["force_min_N"] == 0.0:
+    if sets_force(job, settings) and settings["force_min_N"] == 0.0:
         least = GENTLER if settings["timing"] == "robot" else GENTLE
         settings = {**settings, "force_min_N": least * machine.force_N}
     return settings
+
+
+def sets_force(job: Job, settings: Json) -> bool:
+    """Whether a program changes the pressing force: it is set by hand, once, where the job has no device for it and no
+    other forces are asked for."""
+    asked = settings["force_min_N"] > 0.0 or settings["force_max_N"] > 0.0
+    return job.belt_machine.control == "force" and (asked or of_job(job) is not None)
 
 
 def _with_path(data: Json, laid: Json) -> dict[str, Any]:
@@ -143,6 +151,10 @@ def _try(
     zones: Callable[[dict[str, Any]], Floats] | None,
 ) -> dict[str, Any]:
     laid = raster_path.raster(data, wanted, context.part(0.0, 0.2))
+    if not sets_force(typed(data), settings):
+        laid["forces"] = np.full(
+            len(laid["forces"]), -1.0
+        )  # the job's, from touching down to lifting off
     if zones is not None:
         laid["zones"] = zones(laid)
     # The way is found once: other passes go the same.

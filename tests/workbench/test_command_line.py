@@ -10,7 +10,7 @@ import pytest
 
 import beltgrinding
 from beltgrinding import cli
-from beltgrinding.cli import completion, man, parser
+from beltgrinding.cli import background, completion, man, parser
 from beltgrinding.cli.examples import EXAMPLES
 
 COMMANDS = cli.command_line()
@@ -65,6 +65,14 @@ def test_help_and_version():
     assert json.loads(call("--versions").stdout)["beltgrinding"] == beltgrinding.__version__
     nothing = call()
     assert nothing.returncode == 2 and "Grind a part:" in nothing.stderr
+
+
+def test_the_bar_tells_the_time_left():
+    line = background.progress_line
+    assert line(0.0, 0.0) == "[" + 24 * " " + "]   0 %"
+    assert line(0.5, 90.0) == "[" + 12 * "#" + 12 * " " + "]  50 %, 1 min 30 s left"
+    assert line(0.9, 9.0).endswith(" 90 %, 1 s left")
+    assert line(0.5, 1.0).endswith(" 50 %")
 
 
 def completed(shell, line, tmp_path):

@@ -2,8 +2,11 @@
 
 import sys
 import threading
+import time
 
 CANCEL_TIME = 5.0  # s
+BAR = 24  # characters
+KNOWN, SETTLED = 0.02, 2.0  # of the work, and s: before, nobody knows how long it takes
 
 
 def run(work, quiet=False):
@@ -45,7 +48,21 @@ def run(work, quiet=False):
     return outcome["result"]
 
 
+def progress_line(share, elapsed):
+    """A bar, the share of the work that is done, 0 to 1, and the time left; ``elapsed``: s since it began."""
+    bar = "#" * round(BAR * share)
+    line = f"[{bar:<{BAR}}] {100 * share:3.0f} %"
+    if share < KNOWN or elapsed < SETTLED:
+        return line
+    left = round(elapsed * (1.0 - share) / share)
+    minutes, seconds = divmod(left, 60)
+    return f"{line}, {f'{minutes} min ' if minutes else ''}{seconds} s left"
+
+
 def _show_progress(context, done):
+    begun, width = time.monotonic(), 0
     while not done.wait(0.2):
-        print(f"\r{100 * context.progress:3.0f} %", end="", file=sys.stderr, flush=True)
-    print("\r     \r", end="", file=sys.stderr, flush=True)
+        line = progress_line(context.progress, time.monotonic() - begun)
+        print(f"\r{line:<{width}}", end="", file=sys.stderr, flush=True)
+        width = len(line)
+    print(f"\r{'':<{width}}\r", end="", file=sys.stderr, flush=True)

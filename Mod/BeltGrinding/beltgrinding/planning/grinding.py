@@ -171,12 +171,9 @@ def _others(one: Json) -> list[tuple[str, Json]]:
     """[(what changes, settings)] that may mend what is out of tolerance, the likeliest first."""
     wanted, laid, shares = one["wanted"], one["laid"], one["plan"].why["shares"]
     found = []
-    if shares["slowest_feed"] > MATTERS:
-        repeats = min(_repeats(one), MOST_REPEATS)
-        if repeats > wanted["repeats"] and len(laid["frames"]) * repeats <= MOST_POSES * max(
-            wanted["repeats"], 1
-        ):
-            share = shares["slowest_feed"]
+    share, repeats = _repeats(one)
+    if share > MATTERS and repeats > wanted["repeats"]:
+        if len(laid["frames"]) * repeats <= MOST_POSES * max(wanted["repeats"], 1):
             found.append((share, "repeats", {**wanted, "repeats": repeats}))
     width, length = laid["contact_width_mm"], laid["contact_length_mm"]
     between = shares["shared"] + shares["fringe"] + shares["border"]
@@ -196,16 +193,26 @@ def _others(one: Json) -> list[tuple[str, Json]]:
     return [(name, settings) for _, name, settings in sorted(found, key=lambda one: -one[0])]
 
 
-def _repeats(one: Json) -> int:
-    """How often the passes must be run through so that what is not done at the least feed is."""
+def _repeats(one: Json) -> tuple[float, int]:
+    """(share of the area that is not done even at the least feed and the greatest force, how often the passes must be run
+    through so that most of it is)."""
     plan, now = one["plan"], one["wanted"]["repeats"]
-    field = plan.after.field
-    left = plan.why["state"] == reasons.SLOWEST
+    field, influence = plan.after.field, known(plan.after.influence)
+    slowest, _ = plan.commands.feed_range
+    _, strongest = plan.commands.force_range
+    more = (plan.new / slowest) * (strongest / plan.factors)  # of each command, than it removes now
+    motions = np.repeat(np.arange(len(influence)), np.diff(influence.first).astype(int))
+    depth = influence.depth * more[plan.commands.group][motions]
+    most = np.bincount(influence.sample.astype(int), depth, len(field.height))
     lower, upper = verdicts.limits(plan.after.job, field)
-    stock = np.asarray(field.stock_height, dtype=float)
-    height = np.asarray(field.height, dtype=float)
-    needed, removed = (stock - 0.5 * (lower + upper))[left], (stock - height)[left]
-    ratios = np.sort(needed / np.maximum(removed, 1e-6))
-    if not len(ratios):
-        return now
-    return max(now + 1, math.ceil(now * float(ratios[int(MOST_OF * (len(ratios) - 1))])))
+    needed = np.asarray(field.stock_height, dtype=float) - upper
+    areas = np.asarray(field.areas, dtype=float)
+    left = (most > 0.0) & (most < needed) & (np.asarray(field.flags) & core.MISSED == 0)
+    share = float(areas[left].sum() / areas.sum())
+    if not left.any():
+        return 0.0, now
+    wanted = (needed + 0.5 * (upper - lower))[left]
+    ratios = np.sort(wanted / np.maximum(most[left], 1e-6))
+    return share, min(
+        max(now + 1, math.ceil(now * float(ratios[int(MOST_OF * (len(ratios) - 1))]))), MOST_REPEATS
+    )

@@ -65,10 +65,9 @@ def test_a_page_reads_well(page):
 
 
 def test_what_it_finds():
+    long = "Word " + "word " * 25 + "end."
     page = (
-        "A short one. "
-        + "word " * 26
-        + "end.\n\n    code that is told\n\n| a | table is told |\n\nIt is told.\n"
+        f"A short one. Another. {long}\n\n    code that is told\n\n| a | is told |\n\nIt is told.\n"
     )
     found = prose.problems(page)
     assert len(found) == 2 and "27 words in the sentence" in found[0] and "'is told'" in found[1]

@@ -16,11 +16,14 @@ import sys
 import zipfile
 from pathlib import Path
 
+from PIL import Image
+
 READER = "beltgrinding-cad-reader"
 # Of the system, wherever it runs: glibc; the compiler's libraries, which are backward compatible; Python.
 HOST = re.compile(r"(ld-linux.*|lib(c|m|dl|rt|pthread|util|resolv|gcc_s|stdc\+\+|python3.*))\.so.*")
 # FreeCAD's own, in the process already: a second Coin could not draw into its scene.
 FREECADS = re.compile(r"lib(Coin|GL|GLX|OpenGL|GLU|EGL|X11|Xext|Xi)\.so.*")
+CURL = "libcurl.so.4"
 PURE = ("jsonschema", "attr", "attrs", "pyrsistent", "_pyrsistent_version.py")
 THREE = Path("/usr/share/javascript/three/three.min.js")
 MOST_MB = 60
@@ -74,6 +77,9 @@ def bundle(binaries: list[Path], folder: Path) -> list[Path]:
         for name, path in paths_of_libraries(binaries).items()
         if not HOST.fullmatch(name) and not FREECADS.fullmatch(name)
     }
+    curl = no_curl(folder.parent)
+    if CURL in libraries:
+        libraries[CURL] = curl
     wanted = needed(binaries, libraries)
     folder.mkdir(parents=True)
     copies = []
@@ -94,7 +100,19 @@ def bundle(binaries: list[Path], folder: Path) -> list[Path]:
         output("patchelf", *renamed, "--set-rpath", rpath, one)
         output("strip", "--strip-unneeded", one)
         make_unique_symbols_plain(one)
-    return [libraries[name].resolve() for name in sorted(wanted)]
+    curl.unlink()
+    return [libraries[name].resolve() for name in sorted(wanted) if name != CURL]
+
+
+def no_curl(folder: Path) -> Path:
+    """A library that stands for libcurl, which we never call."""
+    script, made = folder / "no_curl.map", folder / CURL
+    script.write_text("CURL_OPENSSL_4 { global: curl_*; local: *; };\n")
+    source = Path(__file__).with_name("no_curl.c")
+    options = ("-shared", "-fPIC", "-O2", f"-Wl,--version-script={script}", f"-Wl,-soname,{CURL}")
+    output("gcc", *options, source, "-o", made)
+    script.unlink()
+    return made
 
 
 def needed(binaries: list[Path], libraries: dict[str, Path]) -> set[str]:
@@ -189,6 +207,10 @@ def stage_portable(stage: Path, built: Path) -> tuple[list[Path], list[str]]:
         told = json.dumps({"system": "any Linux", "python": f"3.{digits[-1][1:]}"})
         core.with_name(core.name + ".json").write_text(told + "\n")
     vendor(stage / "beltgrinding" / "vendored")
+    for picture in (stage / "docs" / "images").glob("*.png"):
+        Image.open(picture).convert("RGB").quantize(256).save(
+            picture, optimize=True
+        )  # a third of the bytes
     package_xml = stage / "package.xml"
     text = package_xml.read_text()
     package_xml.write_text(re.sub(r"\s*<depend [^>]*>jsonschema</depend>", "", text))

@@ -15,7 +15,6 @@ NOT_YET = """
     conventions.md
     convergence.md
     events.md
-    examples.md
     finish.md
     force-device.md
     free-belt.md
@@ -45,7 +44,6 @@ NOT_YET = """
     section.md
     study.md
     troubleshooting.md
-    tutorial.md
     verification-check.md
     verification.md
     workbench.md

@@ -34,7 +34,6 @@ NOT_YET = """
     planning.md
     presets.md
     program-writing.md
-    programs.md
     raster.md
     reach.md
     report.md
@@ -43,7 +42,6 @@ NOT_YET = """
     scan.md
     section.md
     study.md
-    troubleshooting.md
     verification-check.md
     verification.md
     workbench.md

@@ -21,14 +21,6 @@ NOT_YET = """
     ground-mesh.md
     heat.md
     job-file.md
-    languages/apt.md
-    languages/fanuc.md
-    languages/gcode.md
-    languages/klartext.md
-    languages/polyscope.md
-    languages/statements.md
-    languages/urscript.md
-    languages/val3.md
     macro.md
     methods.md
     planning.md

@@ -28,14 +28,12 @@ NOT_YET = """
     program-writing.md
     raster.md
     reach.md
-    report.md
     robustness.md
     scale.md
     scan.md
     section.md
     study.md
     verification-check.md
-    verification.md
     workbench.md
 """.split()
 PAGES = [

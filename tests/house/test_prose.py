@@ -18,7 +18,6 @@ NOT_YET = """
     finish.md
     force-device.md
     free-belt.md
-    ground-mesh.md
     heat.md
     job-file.md
     macro.md
@@ -30,10 +29,7 @@ NOT_YET = """
     reach.md
     robustness.md
     scale.md
-    scan.md
-    section.md
     study.md
-    verification-check.md
     workbench.md
 """.split()
 PAGES = [

@@ -13,7 +13,6 @@ NOT_YET = """
     collisions.md
     contact.md
     conventions.md
-    convergence.md
     events.md
     finish.md
     force-device.md
@@ -23,7 +22,6 @@ NOT_YET = """
     macro.md
     methods.md
     planning.md
-    presets.md
     program-writing.md
     raster.md
     reach.md

@@ -19,7 +19,6 @@ NOT_YET = """
     free-belt.md
     heat.md
     job-file.md
-    macro.md
     methods.md
     planning.md
     program-writing.md

@@ -18,7 +18,6 @@ NOT_YET = """
     force-device.md
     free-belt.md
     heat.md
-    job-file.md
     methods.md
     planning.md
     program-writing.md

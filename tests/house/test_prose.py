@@ -13,41 +13,19 @@ NOT_YET = """
     collisions.md
     contact.md
     conventions.md
-    convergence.md
     events.md
-    examples.md
     finish.md
     force-device.md
     free-belt.md
-    ground-mesh.md
     heat.md
-    job-file.md
-    languages/apt.md
-    languages/fanuc.md
-    languages/gcode.md
-    languages/klartext.md
-    languages/polyscope.md
-    languages/statements.md
-    languages/urscript.md
-    languages/val3.md
-    macro.md
     methods.md
     planning.md
-    presets.md
     program-writing.md
-    programs.md
     raster.md
     reach.md
-    report.md
     robustness.md
     scale.md
-    scan.md
-    section.md
     study.md
-    troubleshooting.md
-    tutorial.md
-    verification-check.md
-    verification.md
     workbench.md
 """.split()
 PAGES = [

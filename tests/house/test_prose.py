@@ -48,7 +48,6 @@ NOT_YET = """
     tutorial.md
     verification-check.md
     verification.md
-    workbench.md
 """.split()
 PAGES = [
     "README.md",

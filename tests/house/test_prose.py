@@ -18,7 +18,6 @@ NOT_YET = """
     examples.md
     finish.md
     force-device.md
-    free-belt.md
     ground-mesh.md
     heat.md
     job-file.md

@@ -42,7 +42,6 @@ NOT_YET = """
     scale.md
     scan.md
     section.md
-    study.md
     troubleshooting.md
     tutorial.md
     verification-check.md

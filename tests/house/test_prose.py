@@ -14,7 +14,6 @@ NOT_YET = """
     contact.md
     conventions.md
     convergence.md
-    events.md
     examples.md
     finish.md
     force-device.md

@@ -11,7 +11,6 @@ NOT_YET = """
     calibration.md
     checkpoints.md
     collisions.md
-    contact.md
     conventions.md
     convergence.md
     examples.md

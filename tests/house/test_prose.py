@@ -28,7 +28,6 @@ NOT_YET = """
     languages/urscript.md
     languages/val3.md
     macro.md
-    methods.md
     planning.md
     presets.md
     program-writing.md

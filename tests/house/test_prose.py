@@ -33,7 +33,6 @@ NOT_YET = """
     reach.md
     report.md
     robustness.md
-    scale.md
     scan.md
     section.md
     troubleshooting.md

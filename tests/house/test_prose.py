@@ -11,7 +11,6 @@ NOT_YET = """
     conventions.md
     convergence.md
     examples.md
-    finish.md
     force-device.md
     ground-mesh.md
     heat.md

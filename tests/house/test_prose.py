@@ -8,7 +8,6 @@ from support import prose
 NOT_YET = """
     architecture.md
     calibration.md
-    conventions.md
     convergence.md
     examples.md
     force-device.md

@@ -30,7 +30,6 @@ NOT_YET = """
     raster.md
     reach.md
     report.md
-    robustness.md
     scan.md
     section.md
     troubleshooting.md

@@ -159,7 +159,7 @@ def _zones(arrays: Mapping[str, Array], placed: Floats, found: Limits) -> Floats
     rapid = np.append(arrays["rapid"], True)
     unknown = np.where(on & np.isfinite(half), half, found.default_zone_mm)
     unknown = np.where(rapid[:-1] | rapid[1:], 0.0, unknown)
-    zones = np.where(arrays["zones"] < 0.0, unknown, arrays["zones"])
+    zones = np.where(arrays["zones"] == -1.0, unknown, arrays["zones"])
     within = np.where(half > 0.0, np.minimum(zones, half), zones)
     scale = 10.0**PLACE_DIGITS
     return np.floor(within * scale + BARELY) / scale

@@ -18,7 +18,7 @@ from ..base.stopping import stoppable
 from ..engine import Fact, InputError, core
 from ..job import robot_time
 from ..job.poses import DEFAULT_FEED
-from ..programs.program import Motion
+from ..programs.program import Motion, corner_of
 from ..programs.languages.roll import RULES, lay
 from ..programs.problems import ordered
 from ..programs.force_device import ForceDevice
@@ -59,7 +59,7 @@ LISTS = (
     (
         "Zones",
         "FloatList",
-        "mm around each pose in which the corner is rounded; negative: not known",
+        "mm around each pose in which the corner is rounded; -1: not known; below: -1 less the share of the feed that is kept",
     ),
     ("Gaps", "IntegerList", "line from which on motions are left out before each pose; 0: none"),
 )
@@ -396,9 +396,10 @@ def write(obj: DocumentObject, file: Path | str, **options: Any) -> Any:
             float(force) if force >= 0 else None,
             tool=words["tool"],
             base=words["base"],
+            **corner_of(float(zone)),
         )
-        for frame, feed, force, fast, line in zip(
-            arrays["frames"], feeds, forces, arrays["rapid"], arrays["lines"]
+        for frame, feed, force, fast, line, zone in zip(
+            arrays["frames"], feeds, forces, arrays["rapid"], arrays["lines"], arrays["zones"]
         )
     ]
     options.setdefault("tools", obj.ProgramTool.strip() or None)

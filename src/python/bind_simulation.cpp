@@ -146,7 +146,7 @@ void bind_simulation(py::module_& m) {
              py::arg("time_law") = py::dict(), py::arg("gaps") = py::none(),
              "frames (n, 4, 4): base_from_tcp, mm; feeds (n,): mm/s; forces (n,): N, negative: the "
              "job's; rapid (n,): nothing is ground on the way; lines (n,): of the source; joints "
-             "(n, 6): of a robot, degrees, NaN where unknown; zones (n,): mm, negative: the "
+             "(n, 6): of a robot, degrees, NaN where unknown; zones (n,): mm, -1: the "
              "default; "
              "time_law: timing (constant_feed, trapezoidal), acceleration mm/s2, "
              "angular_acceleration rad/s2, rotation_speed rad/s, default_zone mm; gaps: as "
@@ -187,6 +187,29 @@ void bind_simulation(py::module_& m) {
                 return own(std::move(times));
             },
             "(n,) s since the program's begin at which the poses are reached.")
+        .def(
+            "greatest_speeds",
+            [](const ToolPath& path) {
+                constexpr int kParts = 32;
+                const auto& poses = path.poses();
+                std::vector<double> speeds(poses.size(), 0.0);
+                for (std::size_t i = 1; i < poses.size(); ++i) {
+                    const double way = (poses[i].base_from_tcp.translation() -
+                                        poses[i - 1].base_from_tcp.translation())
+                                           .norm();
+                    for (int k = 0; k < kParts && way > 0.0; ++k) {
+                        const double begin = k / static_cast<double>(kParts);
+                        const double end = (k + 1.0) / kParts;
+                        const double seconds = path.elapsed(i, end) - path.elapsed(i, begin);
+                        if (seconds > 0.0)
+                            speeds[i] = std::max(speeds[i], way * (end - begin) / seconds);
+                    }
+                }
+                return own(std::move(speeds));
+            },
+            "(n,) mm/s: the greatest speed of the tool centre point on the way to each pose, on "
+            "the "
+            "mean of a thirty-second of it; 0 where there is no way.")
         .def(
             "frame_at",
             [](const ToolPath& path, double time) {

@@ -11,14 +11,19 @@ namespace beltgrinding {
 namespace {
 
 // Shorter and smaller is the rounding of files and matrices, no motion.
-constexpr double kStillTravel = 1e-9;  // mm
-constexpr double kStillAngle = 1e-9;   // rad
+constexpr double kStillTravel = 1e-9;    // mm
+constexpr double kStillAngle = 1e-9;     // rad
+constexpr double kLeastZone = 1e-6;      // mm, of a corner that keeps a share of the feed
+constexpr std::size_t kCurveParts = 160;  // of a curved motion, each with limits of its own
+constexpr double kFar = std::numeric_limits<double>::infinity();
 
 /// What a motion does per unit of its length, and its limits.
 struct Way {
     Vec3 direction = Vec3::Zero();  // mm
     Vec3 turn = Vec3::Zero();       // rad, in the program's frame
-    double speed = 0.0;
+    double length = 0.0;
+    double feed = 0.0;   // as programmed
+    double speed = 0.0;  // no more than that of turning lets it
     double acceleration = 0.0;
 };
 
@@ -35,21 +40,129 @@ Way way_of(const PathPose& from, const PathPose& to, const TimeLaw& law, double 
         way.turn = turn.axis() * (turn.angle() / length);
     }
     const double rate = way.turn.norm();  // rad per unit of length
-    const double far = std::numeric_limits<double>::infinity();
-    way.speed = std::min(turning ? far : to.feed, rate > 0.0 ? law.rotation_speed / rate : far);
-    way.acceleration = std::min(turning ? far : law.acceleration,
-                                rate > 0.0 ? law.angular_acceleration / rate : far);
+    way.length = length;
+    way.feed = turning ? kFar : to.feed;
+    way.speed = std::min(way.feed, rate > 0.0 ? law.rotation_speed / rate : kFar);
+    way.acceleration = std::min(turning ? kFar : law.acceleration,
+                                rate > 0.0 ? law.angular_acceleration / rate : kFar);
     return way;
 }
 
+/// s2/mm: the zone over the square of the speed with which its parabola is run through at the
+/// limits of acceleration.
+double bend(const Way& before, const Way& after, const TimeLaw& law) {
+    return 0.5 * std::max((after.direction - before.direction).norm() / law.acceleration,
+                          (after.turn - before.turn).norm() / law.angular_acceleration);
+}
+
+/// Where a motion passes into the next one.
+struct Corner {
+    double zone = 0.0;  // mm; 0: the robot stops
+    double speed = 0.0;
+    bool curve = false;  // it passes through on a curve
+    bool stops() const { return !curve && !(speed > 0.0); }
+};
+
 /// The speed at which a parabola of the zone `zone` keeps to the accelerations.
 double corner_speed(const Way& before, const Way& after, double zone, const TimeLaw& law) {
-    const double bend = (after.direction - before.direction).norm() / (2.0 * zone);
-    const double swing = (after.turn - before.turn).norm() / (2.0 * zone);
-    double square = std::numeric_limits<double>::infinity();
-    if (bend > 0.0) square = law.acceleration / bend;
-    if (swing > 0.0) square = std::min(square, law.angular_acceleration / swing);
-    return std::sqrt(square);
+    return std::sqrt(zone / bend(before, after, law));
+}
+
+/// The zone of a corner through which the robot keeps `share` of the lower of both feeds.
+double zone_of_share(const Way& before, const Way& after, double share, const TimeLaw& law) {
+    const double speed = share * std::min(before.speed, after.speed);
+    return std::max(kLeastZone, bend(before, after, law) * speed * speed);
+}
+
+/// The zone of a pose, kFar on a curve; `before` and `after` are the ways beside it.
+double zone_at(const PathPose& pose, bool positioning, const Way& before, const Way& after,
+               const TimeLaw& law) {
+    if (pose.zone >= 0.0) return pose.zone;
+    if (positioning) return 0.0;
+    if (pose.zone == ZoneCode::kOnCurve) return kFar;
+    if (pose.zone < -1.0) return zone_of_share(before, after, ZoneCode::share(pose.zone), law);
+    return law.default_zone;
+}
+
+/// The tangent where motions pass into each other on a curve, less that of the motion before
+/// (`at_end`) or of the one after: their mean, each weighted by the other's length.
+void bend_between(const Way& before, const Way& after, MotionPlan::Bow& bow, bool at_end) {
+    const double weight = before.length / (before.length + after.length);
+    const Vec3 way = after.direction - before.direction, turn = after.turn - before.turn;
+    if (at_end) {
+        bow.end = weight * way;
+        bow.turn_end = weight * turn;
+    } else {
+        bow.begin = (weight - 1.0) * way;
+        bow.turn_begin = (weight - 1.0) * turn;
+    }
+}
+
+/// The largest first derivatives of a curve, of place and rotation vector, and its second ones, per
+/// mm, from the share t of its way to u.
+struct Course {
+    double along = 0.0, rate = 0.0, bent = 0.0, swung = 0.0;
+};
+
+Course course(const Way& way, const MotionPlan::Bow& bow, double t, double u) {
+    Course most;
+    for (const double x : {t, 0.5 * (t + u), u}) {
+        const double rise = (3.0 * x - 4.0) * x + 1.0, fall = (3.0 * x - 2.0) * x;
+        const double first = (6.0 * x - 4.0) / way.length, last = (6.0 * x - 2.0) / way.length;
+        const auto more = [](double& value, const Vec3& other) {
+            value = std::max(value, other.norm());
+        };
+        more(most.along, way.direction + rise * bow.begin + fall * bow.end);
+        more(most.rate, way.turn + rise * bow.turn_begin + fall * bow.turn_end);
+        more(most.bent, first * bow.begin + last * bow.end);
+        more(most.swung, first * bow.turn_begin + last * bow.turn_end);
+    }
+    return most;
+}
+
+double over(double most, double by) {
+    return by > 0.0 ? most / by : kFar;
+}
+
+SpeedLimit limit_of(const Course& most, double length, double feed, const TimeLaw& law) {
+    const double square =
+        std::min(over(law.acceleration, most.bent), over(law.angular_acceleration, most.swung));
+    const double speed =
+        std::min({over(feed, most.along), over(law.rotation_speed, most.rate), std::sqrt(square)});
+    const double acceleration =
+        std::min(over(law.acceleration, most.along), over(law.angular_acceleration, most.rate));
+    return {length, speed, acceleration, false};
+}
+
+/// Adds the limits of a curved motion's parts: one where only feed and path acceleration limit it.
+/// Returns how many.
+std::size_t add_curve(const Way& way, const MotionPlan::Bow& bow, const TimeLaw& law,
+                      std::vector<SpeedLimit>& limits) {
+    const Course whole = course(way, bow, 0.0, 1.0);
+    const SpeedLimit one = limit_of(whole, way.length, way.feed, law);
+    if (one.speed == over(way.feed, whole.along) &&
+        one.acceleration == over(law.acceleration, whole.along)) {
+        limits.push_back(one);
+        return 1;
+    }
+    const double parts = static_cast<double>(kCurveParts);
+    for (std::size_t k = 0; k < kCurveParts; ++k) {
+        const double t = static_cast<double>(k) / parts, u = static_cast<double>(k + 1) / parts;
+        limits.push_back(limit_of(course(way, bow, t, u), way.length / parts, way.feed, law));
+    }
+    return kCurveParts;
+}
+
+/// A straight motion's frame at the share t of its way, moved onto its curve.
+Frame bowed(Frame frame, const MotionPlan::Bow& bow, double length, double t) {
+    const double rise = ((t - 2.0) * t + 1.0) * t * length, fall = (t - 1.0) * t * t * length;
+    const Vec3 turn = rise * bow.turn_begin + fall * bow.turn_end;
+    frame.translation() += rise * bow.begin + fall * bow.end;
+    const double angle = turn.norm();
+    if (angle > 0.0) {
+        frame.linear() = Eigen::AngleAxisd(angle, turn / angle) * frame.linear();
+    }
+    return frame;
 }
 
 }  // namespace
@@ -92,50 +205,61 @@ MotionPlan::MotionPlan(const std::vector<PathPose>& poses, const TimeLaw& law)
         moving.push_back(i);
     }
 
+    std::vector<Corner> corners(moving.size());  // at the motions' ends
+    for (std::size_t k = 0; k + 1 < moving.size(); ++k) {
+        // Of poses that are programmed twice the smallest zone counts.
+        Corner corner{kFar};
+        const Way &way = ways[moving[k]], &next = ways[moving[k + 1]];
+        for (std::size_t i = moving[k]; i < moving[k + 1]; ++i) {
+            const bool positioning = poses[i].rapid || poses[i + 1].rapid;
+            corner.zone = std::min(corner.zone, zone_at(poses[i], positioning, way, next, law));
+        }
+        const Motion &before = motions_[moving[k]], &after = motions_[moving[k + 1]];
+        const double half = 0.5 * std::min(before.length, after.length);
+        if (before.turning != after.turning) corner.zone = 0.0;
+        if (before.turning && corner.zone > 0.0) corner.zone = half;
+        corner.curve = corner.zone == kFar;
+        corner.zone = std::min(corner.zone, half);
+        if (corner.zone > 0.0 && !corner.curve) {
+            corner.speed = corner_speed(way, next, corner.zone, law);
+        }
+        corners[k] = corner;
+    }
+    for (std::size_t k = 1; k < corners.size(); ++k) {
+        if (corners[k - 1].curve && !corners[k].curve) corners[k] = {};
+        if (corners[k].curve && !corners[k - 1].curve) corners[k - 1] = {};
+    }
     std::vector<SpeedLimit> limits;
     limits.reserve(3 * moving.size());
-    double speed_before = 0.0;  // limit of the corner at the motion's begin
     for (std::size_t k = 0; k < moving.size(); ++k) {
+        const Corner before = k > 0 ? corners[k - 1] : Corner{};
         Motion& motion = motions_[moving[k]];
         const Way& way = ways[moving[k]];
         motion.stretch = limits.size();
-        double speed_after = 0.0;
-        bool stop = true;
-        if (k + 1 < moving.size()) {
-            Motion& next = motions_[moving[k + 1]];
-            // Of poses that are programmed twice the smallest zone counts.
-            double zone = std::numeric_limits<double>::infinity();
-            for (std::size_t i = moving[k]; i < moving[k + 1]; ++i) {
-                const bool positioning = poses[i].rapid || poses[i + 1].rapid;
-                const double unknown = positioning ? 0.0 : law.default_zone;
-                zone = std::min(zone, poses[i].zone < 0.0 ? unknown : poses[i].zone);
-            }
-            if (zone > 0.0 && motion.turning == next.turning) {
-                const double half = 0.5 * std::min(motion.length, next.length);
-                zone = motion.turning ? half : std::min(zone, half);
-                speed_after = corner_speed(way, ways[moving[k + 1]], zone, law);
-                stop = !(speed_after > 0.0);
-            }
-            if (!stop) {
-                motion.after = next.before = zone;
-                motion.next = moving[k + 1];
-                next.previous = moving[k];
-            }
+        if (k > 0) motion.previous = moving[k - 1];
+        if (k + 1 < moving.size()) motion.next = moving[k + 1];
+        if (before.curve || corners[k].curve) {
+            motion.curved = true;
+            if (before.curve) bend_between(ways[motion.previous], way, motion.bow, false);
+            if (corners[k].curve) bend_between(way, ways[motion.next], motion.bow, true);
+            motion.parts = add_curve(way, motion.bow, law, limits);
+        } else {
+            motion.before = before.stops() ? 0.0 : before.zone;
+            motion.after = corners[k].stops() ? 0.0 : corners[k].zone;
+            motion.parts = 1 + (motion.before > 0.0) + (motion.after > 0.0);
+            const auto add = [&](double length, double speed) {
+                limits.push_back({length, std::min(speed, way.speed), way.acceleration, false});
+            };
+            if (motion.before > 0.0) add(motion.before, before.speed);
+            add(std::max(0.0, motion.length - motion.before - motion.after), way.speed);
+            if (motion.after > 0.0) add(motion.after, corners[k].speed);
         }
-        const auto add = [&](double length, double speed) {
-            limits.push_back({length, std::min(speed, way.speed), way.acceleration, false});
-        };
-        if (motion.before > 0.0) add(motion.before, speed_before);
-        add(std::max(0.0, motion.length - motion.before - motion.after), way.speed);
-        if (motion.after > 0.0) add(motion.after, speed_after);
-        limits.back().stop = stop;
-        speed_before = speed_after;
+        limits.back().stop = corners[k].stops();
     }
     profile_ = SpeedProfile(limits);
     for (const std::size_t i : moving) {
         Motion& motion = motions_[i];
-        const std::size_t count = 1 + (motion.before > 0.0) + (motion.after > 0.0);
-        for (std::size_t k = 0; k < count; ++k) {
+        for (std::size_t k = 0; k < motion.parts; ++k) {
             motion.duration += profile_.duration(motion.stretch + k);
         }
         duration_ += motion.duration;
@@ -144,6 +268,11 @@ MotionPlan::MotionPlan(const std::vector<PathPose>& poses, const TimeLaw& law)
 
 MotionPlan::Place MotionPlan::place(const Motion& motion, double t) const {
     const double s = std::clamp(t, 0.0, 1.0) * motion.length;
+    if (motion.curved) {
+        const double part = motion.length / static_cast<double>(motion.parts);
+        const std::size_t k = std::min(static_cast<std::size_t>(s / part), motion.parts - 1);
+        return {motion.stretch + k, std::clamp(s - static_cast<double>(k) * part, 0.0, part)};
+    }
     std::size_t stretch = motion.stretch;
     double begin = 0.0;
     if (motion.before > 0.0) {
@@ -185,6 +314,11 @@ Frame MotionPlan::corner(const std::vector<PathPose>& poses, std::size_t from, c
 
 Frame MotionPlan::frame(const std::vector<PathPose>& poses, std::size_t pose, double t) const {
     const Motion& motion = motions_[pose];
+    if (motion.curved) {
+        const double u = std::clamp(t, 0.0, 1.0);
+        return bowed(interpolate(poses[pose - 1].base_from_tcp, poses[pose].base_from_tcp, u),
+                     motion.bow, motion.length, u);
+    }
     const double s = std::clamp(t, 0.0, 1.0) * motion.length;
     if (s < motion.before) {
         return corner(poses, motion.previous, motions_[motion.previous], pose, motion,

@@ -8,6 +8,15 @@
 
 namespace beltgrinding {
 
+/// What a pose's zone says below -1, which is unknown.
+struct ZoneCode {
+    /// The robot passes through on a smooth curve, as at a spline's points.
+    static constexpr double kOnCurve = -3.0;
+    /// From -2 to -1: the share of the feed that the robot keeps through the corner, which it
+    /// rounds as far as that takes (Fanuc's CNT).
+    static double share(double zone) { return -1.0 - zone; }
+};
+
 /// The robot's motion under a trapezoidal time law: where it is and when.
 ///
 /// In the zone of a pose (at most half of the way to its neighbours) the corner is a parabola:
@@ -19,6 +28,15 @@ namespace beltgrinding {
 /// it would exceed the limit, s' is lower; at the parabola's vertex that is speed^2 / radius <=
 /// acceleration. Along the path s' keeps to the feed, to the rotation speed and to both
 /// accelerations (see SpeedProfile); the limits along and across the path are held separately.
+///
+/// A corner that keeps a share of the feed has the zone that its speed takes by the same formula.
+///
+/// Through a pose on a curve the robot passes without a corner: each motion beside it is a cubic of
+/// Hermite, for place and rotation vector, with the tangent at the pose of Bessel (Farin, Curves
+/// and Surfaces for CAGD, 5th edition, 2002, section 9.8): the mean of both directions, each
+/// weighted by the other motion's length. The limits hold in each of up to kCurveParts parts of a
+/// motion. A motion has no rounded corner at its other end: the robot stops there, as controllers
+/// do at a spline's ends.
 ///
 /// At zone 0, and between a motion and a pure rotation, the robot stands still. A pose of unknown
 /// zone beside a rapid motion has zone 0.
@@ -40,6 +58,13 @@ class MotionPlan {
     /// base_from_tcp there.
     Frame frame(const std::vector<PathPose>& poses, std::size_t pose, double t) const;
 
+    /// How a curved motion departs from the straight one: tangents less the straight one's, at its
+    /// begin and its end, of place (mm) and rotation vector (rad) per mm.
+    struct Bow {
+        Vec3 begin = Vec3::Zero(), end = Vec3::Zero();
+        Vec3 turn_begin = Vec3::Zero(), turn_end = Vec3::Zero();
+    };
+
   private:
     /// The motion to a pose; its way is `length`, of which `before` and `after` lie in corners.
     struct Motion {
@@ -50,7 +75,10 @@ class MotionPlan {
         std::size_t stretch = 0;   ///< first one in the profile
         std::size_t previous = 0;  ///< the motion before, 0: none
         std::size_t next = 0;      ///< the motion after, 0: none
+        std::size_t parts = 1;     ///< stretches of it
         bool turning = false;      ///< a pure rotation
+        bool curved = false;       ///< on a curve at one end at least
+        Bow bow{};                 ///< of a curved one
     };
     struct Place {
         std::size_t stretch;

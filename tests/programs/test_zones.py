@@ -6,9 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from beltgrinding.engine import core
 from beltgrinding.programs.program import ProgramError
 from beltgrinding.programs.registry import read_program
-from beltgrinding.programs.program import CHORD_ERROR, PASSING_ERROR
+from beltgrinding.programs.program import CHORD_ERROR, ON_CURVE
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -134,6 +135,8 @@ def test_fanuc_has_termination_types(tmp_path):
     )
     program = read(tmp_path, "p.ls", f"/PROG P\n/MN\n{moves}/POS\n{points}/END\n")
     assert zones(program) == [0, None, None, 25.0, 10.0, None, 0]
+    assert [m.corner_share for m in program.motions] == [None, 1.0, None, None, None, 0.5, None]
+    assert program.path_arrays(10.0)["zones"].tolist() == [0, -2, -1, 25, 10, -1.5, 0]
 
 
 def test_inform_has_position_levels(tmp_path):
@@ -198,11 +201,20 @@ def test_chords_of_an_arc_are_rounded_and_its_end_is_as_programmed(tmp_path):
     assert rounded(arrays).max() <= CHORD_ERROR * 1.01
 
 
-def test_a_spline_is_passed_near_its_points(tmp_path):
+def test_a_spline_passes_through_its_points(tmp_path):
     body = "SPLINE\nSPL {X 100}\nSPL {X 195,Y 30}\nSPL {X 195,Y 130}\nENDSPLINE\nLIN {X 300}"
     arrays = krl(tmp_path, START + body).path_arrays(100.0)
-    assert (arrays["zones"][1:3] > 0).all() and arrays["zones"][3] == 0
-    assert rounded(arrays).max() == pytest.approx(PASSING_ERROR)
+    assert (arrays["zones"][1:3] == ON_CURVE).all() and arrays["zones"][3] == 0
+    law = {"timing": "trapezoidal", "acceleration": 1000.0}
+    given = {
+        name: arrays[name] for name in ("frames", "feeds", "forces", "rapid", "lines", "zones")
+    }
+    path = core.ToolPath(**given, time_law=law)
+    places = [path.frame_at(time)[0][:3, 3] for time in path.times()]
+    assert np.abs(np.array(places) - arrays["frames"][:, :3, 3]).max() < 1e-6
+    # It does not stop there.
+    after = [path.frame_at(time + 0.01)[0][:3, 3] for time in path.times()[1:3]]
+    assert (np.linalg.norm(np.array(after) - places[1:3], axis=1) > 0.3).all()
 
 
 def test_before_a_joint_target_no_corner_is_rounded(tmp_path):

@@ -103,6 +103,48 @@ def test_the_command_line_takes_a_device(tmp_path, capsys):
     assert "--form is convert's" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    "controller, form", [("krc4", "spline"), ("krc2", "zones"), ("", "spline")]
+)
+def test_passes_have_the_form_of_the_job_s_controller(tmp_path, capsys, controller, form):
+    """raster, FreeCAD's options and convert; another form that is given is a warning, in KRL only."""
+    job = {**job_with("p.src"), "programs": []}
+    job["robot"] = {"controller": controller} if controller else {}
+    file = tmp_path / "job.json"
+    file.write_text(json.dumps(job))
+    command = ["raster", str(file), "--set", 'along="direction"', "-o"]
+    assert cli.main([*command, str(tmp_path / "r.src")]) == 0
+    text = (tmp_path / "r.src").read_text()
+    assert ("SPLINE" in text) == (form == "spline") and ("C_DIS" in text) == (form == "zones")
+    assert "form" not in capsys.readouterr().err
+    other = {"spline": "zones", "zones": "spline"}[form]
+    assert cli.main([*command, str(tmp_path / "o.src"), "--form", other]) == 0
+    assert ("SPLINE" in (tmp_path / "o.src").read_text()) == (other == "spline")
+    why = "reaches the feeds in spline blocks" if other == "zones" else "knows no spline blocks"
+    assert f"warning: form {other}: " in (told := capsys.readouterr().err) and why in told
+    assert cli.main([*command, str(tmp_path / "o.mod"), "--form", other]) == 0
+    assert "form" not in capsys.readouterr().err
+
+
+def test_convert_takes_the_form_of_a_controller(tmp_path, capsys):
+    table = tmp_path / "p.csv"
+    write_program(table, None, motions(FORCES))
+    convert = ["program", "convert", str(table), "--force", "-o"]
+    found = {}
+    for controller in ("krc4", "krc2", "irc5"):
+        path = tmp_path / f"{controller}.src"
+        assert cli.main([*convert, str(path), "--controller", controller]) == 0
+        found[controller] = "SPLINE" in path.read_text()
+    assert found == {"krc4": True, "krc2": False, "irc5": False}
+    assert cli.main([*convert, str(tmp_path / "q.src"), "--controller", "krc3"]) == 2
+    assert "no 'krc3' among the controllers" in capsys.readouterr().err
+    assert cli.main(["program", str(table), "--controller", "krc2"]) == 2
+    assert "--controller is convert's" in capsys.readouterr().err
+    both = ["--controller", "krc2", "--form", "spline"]
+    assert cli.main([*convert, str(tmp_path / "s.src"), *both]) == 0
+    assert "KUKA KR C2 knows no spline blocks" in capsys.readouterr().err
+
+
 def test_changes_go_back_through_the_device(tmp_path):
     path, changes = tmp_path / "p.src", tmp_path / "changes.csv"
     write_program(path, None, motions(FORCES), form="spline", force_device=DEVICE)

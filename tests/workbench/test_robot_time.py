@@ -102,13 +102,13 @@ def test_no_block_is_faster_than_three_cycles():
 
 
 def test_no_feed_is_greater_than_the_robot_comes_to():
-    """From rest over 6 mm to rest with 2300 mm/s2: 2 sqrt(6 / 2300) s, 58.7 mm/s on the mean."""
+    """From rest over 6 mm to rest with 2300 mm/s2: sqrt(6 * 2300) = 117.5 mm/s half way, on a thirty-second of it 115.6."""
     places = [(0, 0, 0), (6, 0, 0), (6, 0, 0.0)]
     given = poses_of(places)
     given[1]["zone_mm"] = 0.0
     given[2].update(x_mm=30.0, rapid=True)
     most = commands_of(given).feed_range[1]
-    assert most[1] == pytest.approx(6.0 / (2.0 * math.sqrt(6.0 / 2300.0)), abs=0.1)
+    assert math.sqrt(6.0 * 2300.0) * 0.98 < most[1] <= math.sqrt(6.0 * 2300.0)
     # A turn of 90 degrees over 10 mm at 200 degrees/s takes 0.45 s at least.
     turned = poses_of([(0, 0, 0), (10, 0, 0), (20, 0, 0)])
     turned[1].update(qw=math.sqrt(0.5), qz=math.sqrt(0.5))

@@ -162,6 +162,54 @@ TEST(TimeLaw, AZoneReachesNoFurtherThanHalfOfTheWay) {
     EXPECT_LT(duration(5.0), duration(4.0));
 }
 
+TEST(TimeLaw, AShareOfTheFeedIsKeptThroughACornerByTheZoneThatItTakes) {
+    // At 90 degrees |v - u| = sqrt 2: the zone is share^2 v^2 sqrt 2 / (2 a), 7.07 mm for the whole
+    // feed.
+    for (const double share : {1.0, 0.5}) {
+        const double zone = share * share * kFeed * kFeed * std::sqrt(0.5) / kAcceleration;
+        const auto path = [&](double given, double length) {
+            return ToolPath(
+                {pose_at(0, 0, 0), pose_at(length, 0, given), pose_at(length, length, 0)}, {},
+                law());
+        };
+        EXPECT_NEAR(path(-1.0 - share, 60.0).duration(), path(zone, 60.0).duration(), 1e-9);
+        EXPECT_NEAR(path(-1.0 - share, 1.0).duration(), path(0.5, 1.0).duration(), 1e-12);
+    }
+    // Straight on, nothing slows it down; beside a rapid motion it stops.
+    std::vector<PathPose> poses{pose_at(0, 0, 0), pose_at(50, 0, -2), pose_at(100, 0, 0)};
+    EXPECT_NEAR(ToolPath(poses, {}, law()).duration(), from_rest_to_rest(100, kFeed, kAcceleration),
+                1e-9);
+    poses[1].rapid = true;
+    EXPECT_NEAR(ToolPath(poses, {}, law()).duration(),
+                2.0 * from_rest_to_rest(50, kFeed, kAcceleration), 1e-9);
+}
+
+TEST(TimeLaw, ACurveGoesThroughItsPosesWithinTheAccelerations) {
+    const double curve = -3.0;
+    const std::vector<PathPose> poses{pose_at(0, 0, 0), pose_at(10, 0, curve),
+                                      pose_at(14, 1, curve, kFeed, 0.1),
+                                      pose_at(20, 5, curve, kFeed, 0.15), pose_at(40, 10, 0)};
+    const ToolPath path(poses, {}, law());
+    double time = 0.0;
+    for (std::size_t i = 1; i < poses.size(); ++i) {
+        time += path.duration(i);
+        const Vec3 place = path.at(time).base_from_tcp.translation();
+        EXPECT_NEAR((place - poses[i].base_from_tcp.translation()).norm(), 0.0, 1e-6) << i;
+    }
+    const double step = 1e-3;
+    Vec3 before = Vec3::Zero(), last = path.at(0.0).base_from_tcp.translation();
+    double largest = 0.0, slowest = kFeed;
+    for (double t = step; t < path.duration(); t += step) {
+        const Vec3 place = path.at(t).base_from_tcp.translation(), speed = (place - last) / step;
+        if (t > 1.5 * step) largest = std::max(largest, (speed - before).norm() / step);
+        if (place.x() > 8.0 && place.x() < 30.0) slowest = std::min(slowest, speed.norm());
+        EXPECT_LE(speed.norm(), kFeed * (1.0 + 1e-3));
+        before = speed, last = place;
+    }
+    EXPECT_LE(largest, std::sqrt(2.0) * kAcceleration * 1.01);
+    EXPECT_GT(slowest, 1.0);  // it does not stop at its points
+}
+
 TEST(TimeLaw, ADenseArcIsRunAtTheSpeedOfItsRadius) {
     // Chords of an arc with zones: v^2 / r <= a.
     const double radius = 5.0;

@@ -49,6 +49,7 @@ def add(commands):
 
 def _grind(arguments):
     from ..engine import InputError
+    from ..job import robot_time
     from ..planning import apply, from_file, grinding, rounds as plans
     from ..programs.writers.writer import zones_written
     from ..raster import raster_path
@@ -75,11 +76,13 @@ def _grind(arguments):
         notes[:] = _write_program(found, program, arguments.force, arguments.form)
         return [{"file": program.name}]
 
-    def zones(laid):
-        return zones_written(raster_path.program(laid), arguments.program, arguments.form)
-
     def work(context):
         job, first = _job(arguments, context)
+        form = robot_time.form(job, arguments.form)
+
+        def zones(laid):
+            return zones_written(raster_path.program(laid), arguments.program, form)
+
         _check_name(arguments.program, arguments.form, job)
         apply.check({**job, "programs": []}, out, [arguments.part], arguments.force)
         begun = context.part(0.0, plan.PLANNING if wanted["check"] else 1.0)
@@ -199,6 +202,7 @@ def _write_program(found, file, force, form):
     laid = listed_poses(found.job["programs"][0]["poses"], "raster")
     try:
         made = raster_path.program(laid, **_frame_words(found.job))
-        return write_program(file, None, made, **_as_followed(form, found.job))
+        followed, told = _as_followed(form, found.job, file)
+        return write_program(file, None, made, **followed) + told
     except OSError as error:
         raise cannot_be_written(file, error) from None

@@ -83,10 +83,12 @@ class Messages:
                 self._print("cli.warning", "warning", [one])
 
     def print_written(self, facts):
-        """What ``write_program`` tells: forces that the program does not set as they are planned are warnings."""
-        forces = [one for one in facts if one.code.startswith("programs.writers.force_")]
-        self.print_warnings(forces)
-        self.print_notes([one for one in facts if one not in forces])
+        """What ``write_program`` tells: forces that the program does not set as they are planned, and a form that the
+        controller does not follow, are warnings."""
+        warned = ("programs.writers.force_", "job.form_")
+        warnings = [one for one in facts if one.code.startswith(warned)]
+        self.print_warnings(warnings)
+        self.print_notes([one for one in facts if one not in warnings])
 
     def print_notes(self, notes):
         """Facts that are no warnings, a line each."""

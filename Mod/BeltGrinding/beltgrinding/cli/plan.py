@@ -125,6 +125,7 @@ def text(summary, from_file=False, before=True):
             f"at {summary['beyond_limits']['after']} places feed or force change faster than they may: the program's own "
             "steps, or motions that stay"
         )
+    lines += _about_forces(summary)
     if summary["timing"] == "job":
         lines.append(
             f"planned by the job's own time law ({summary['time_law']}), not for the time that the robot takes"
@@ -135,6 +136,26 @@ def text(summary, from_file=False, before=True):
         f"{summary['commands']} commands changed"
     )
     return "\n".join(lines)
+
+
+def _about_forces(summary):
+    hand, lines = summary["force_by_hand"], []
+    if hand and hand["after_N"] != hand["before_N"]:
+        lines.append(
+            f"set {hand['after_N']:.4g} N by hand on the belt machine in place of {hand['before_N']:.4g} N: the programs set "
+            "no force; job.json has it"
+        )
+    if summary["less_force_would_help"]:
+        lines.append(
+            "the robot goes no faster there, and the force is fixed: less of it would help. Allow it by --set "
+            "force_min_N=5 (one force, set by hand), or say by belt_machine.force_device how programs set it"
+        )
+    if summary["short_blocks"]:
+        lines.append(
+            f"{summary['short_blocks']} commands keep feeds at which their blocks last less than the controller needs: the "
+            "robot may be slower there, and cut deeper"
+        )
+    return lines
 
 
 def _sure(one):

@@ -27,7 +27,12 @@ def add(commands):
         help="what sets the pressing force in the program that is read, and in the one that is written: a file with "
         "the job's belt_machine.force_device, a job, or that JSON itself (docs/force-device.md)",
     )
-    add_form(program, "as the source's motions say")
+    add_form(program, "as --controller follows them, without it as the source's motions say")
+    program.add_argument(
+        "--controller",
+        metavar="ID",
+        help="convert: write the passes as this controller follows them (beltgrind presets controllers)",
+    )
     program.add_argument(
         "--roll",
         metavar="hold|along|X,Y,Z",
@@ -103,24 +108,36 @@ def add(commands):
     reach.set_defaults(do=_reach)
 
 
-def add_form(command, default="spline"):
+def add_form(command, default="as the job's robot.controller follows them"):
     """The option ``--form`` of a new program."""
     command.add_argument(
         "--form",
         choices=("spline", "zones"),
-        default="spline" if default == "spline" else "",
+        default="",
         help="how the controller follows the passes: KRL's as spline blocks, which a KRC2 does not know, or by zones "
         f"of at most half a block; other languages by such zones (default: {default})",
     )
 
 
-def _as_followed(form, job):
-    """How ``write_program`` writes passes that were laid or planned for a job."""
+def _as_followed(form, job, file):
+    """(options with which ``write_program`` writes passes that were laid or planned for a job, what is to be told of
+    the form that is given)."""
     from ..job import robot_time
     from ..programs.force_device import of_job
 
-    pace = robot_time.limits(job).pace
-    return {"form": form, "digits": "robot", "force_device": of_job(job), "pace": pace}
+    options, told = robot_time.written(job, file, form)
+    return {**options, "force_device": of_job(job)}, told
+
+
+def _form_of_controller(arguments):
+    """(form of a converted program, what is to be told of it): of ``--controller``, if one is named."""
+    from ..job import robot_time
+
+    if not arguments.controller:
+        return arguments.form, []
+    job = {"robot": {"controller": arguments.controller}}
+    options, told = robot_time.written(job, arguments.output, arguments.form)
+    return options["form"], told
 
 
 def _add_frames(command):
@@ -220,9 +237,12 @@ def _program(arguments):
             "program {action}: --base and --tool are convert's",
             action=action,
         )
-    if action != "convert" and arguments.form:
+    if action != "convert" and (arguments.form or arguments.controller):
         raise InputError(
-            "cli.form_of_new_programs", "program {action}: --form is convert's", action=action
+            "cli.form_of_new_programs",
+            "program {action}: {option} is convert's",
+            action=action,
+            option="--form" if arguments.form else "--controller",
         )
     if action == "write" and arguments.roll:
         raise InputError(
@@ -258,8 +278,10 @@ def _program(arguments):
         read, said = program.counted()
         arguments.status = int(arguments.strict and read < said)
         if action == "convert" and arguments.status == 0 and read:
-            options = {"form": arguments.form, "force_device": device}
+            form, told = _form_of_controller(arguments)
+            options = {"form": form, "force_device": device}
             notes = write_program(arguments.output, None, program, **_frames(arguments), **options)
+            notes += told
         elif arguments.write_values:
             data, varies = given.explored(
                 program, files[0], lambda values: read_program(files[0], values=values)
@@ -379,8 +401,8 @@ def _write_raster(arguments, file, job, found):
 
     try:
         made = raster.program(found, **_frame_words(job))
-        followed = _as_followed(arguments.form, job)
-        notes = write_program(file, None, made, **_frames(arguments), **followed)
+        followed, told = _as_followed(arguments.form, job, file)
+        notes = write_program(file, None, made, **_frames(arguments), **followed) + told
     except OSError as error:
         raise cannot_be_written(file, error) from None
     arguments.messages.print_warnings(found["warnings"])

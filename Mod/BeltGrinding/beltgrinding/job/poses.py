@@ -11,6 +11,7 @@ from ..base import frames, records
 from ..base.kinds import Array, Facts, Floats, Json, known
 from ..engine import InputError, core
 from ..programs.force_device import ForceDevice
+from ..programs.program import ON_CURVE, share_of_zone, zone_of_share
 from .settings import Job, Program
 
 DEFAULT_FEED = 100.0  # mm/s, for poses and programs that set none
@@ -47,6 +48,10 @@ def list_poses(arrays: Mapping[str, Array]) -> list[dict[str, Any]]:
             pose["force_N"] = force
         if zone >= 0:
             pose["zone_mm"] = zone
+        elif zone == ON_CURVE:
+            pose["on_curve"] = True
+        elif (share := share_of_zone(zone)) is not None:
+            pose["corner_share"] = share
         if gap:
             pose["gap_line"] = gap
         poses.append(pose)
@@ -69,9 +74,16 @@ def listed_poses(poses: Sequence[Json], where: str) -> dict[str, Array]:
         "forces": np.array([p.get("force_N", -1.0) for p in poses], dtype=float),
         "rapid": np.array([p.get("rapid", False) for p in poses], dtype=bool),
         "lines": np.array([p.get("line", 0) for p in poses], dtype=int),
-        "zones": np.array([p.get("zone_mm", -1.0) for p in poses], dtype=float),
+        "zones": np.array([_zone(p) for p in poses], dtype=float),
         "gaps": np.array([p.get("gap_line", 0) for p in poses], dtype=int),
     }
+
+
+def _zone(pose: Json) -> float:
+    if pose.get("on_curve", False):
+        return ON_CURVE
+    share = pose.get("corner_share")
+    return float(pose.get("zone_mm", -1.0 if share is None else zone_of_share(share)))
 
 
 def program_arrays(

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..base import frames, records, schemas
-from ..base.kinds import Array, Floats, Json
+from ..base.kinds import Array, Facts, Floats, Json
+from ..engine import Fact
 from ..presets import library
 from .settings import Job
 from .typed import typed
@@ -23,6 +25,7 @@ KEYS = {
     "rotation_speed_deg_s": "rotation_speed",
     "default_zone_mm": "default_zone",
 }
+KRL = ".src"  # the language that has both forms
 PLACE_DIGITS, ANGLE_DIGITS = 3, 3  # of mm and degrees, in programs
 FEED_DIGITS = 1  # of mm/s
 STRAIGHT = 0.9  # cosine between the ways to a pose and from it: no corner
@@ -55,18 +58,17 @@ class Limits:
 
 
 def limits(job: Job | Json) -> Limits:
-    """The ``Limits`` of a validated job. Raises InputError for a controller that is not there."""
+    """The ``Limits`` of a validated job, or of its robot and simulation alone. Raises InputError for a controller that is
+    not there."""
     job = typed(job)
-    name = job.robot.controller or COMMON
+    name = getattr(job.robot, "controller", None) or COMMON
     preset = library.find("controllers", name)
     numbers = {key: library.middle(one) for key, one in library.numbers(preset).items()}
     rules = schemas.schema("job")["properties"]["simulation"]["properties"]
-    own = {
-        key: getattr(job.simulation, key)
-        if getattr(job.simulation, key) != rules[key]["default"]
-        else numbers[number]
-        for key, number in KEYS.items()
-    }
+    own = {}
+    for key, number in KEYS.items():
+        value = getattr(job.simulation, key, rules[key]["default"])
+        own[key] = numbers[number] if value == rules[key]["default"] else value
     cycle = numbers["interpolation_cycle"]
     return Limits(
         controller=name,
@@ -77,6 +79,39 @@ def limits(job: Job | Json) -> Limits:
         look_ahead=round(numbers["look_ahead"]),
         **own,
     )
+
+
+def form(job: Job | Json, given: str = "") -> str:
+    """How passes that were laid or planned for a job are written, as ``write_program`` takes it: as its controller
+    follows them, unless a form is given. Raises InputError for a controller that is not there."""
+    return given or limits(job).form
+
+
+def written(job: Job | Json, file: Path | str, given: str = "") -> tuple[dict[str, Any], Facts]:
+    """(options of ``write_program`` for passes that were laid or planned for a job: form, digits, pace; what is to be told
+    of a form that is ``given``). ``file``: its suffix says the language. Raises InputError."""
+    found = limits(job)
+    options = {"form": form(job, given), "digits": "robot", "pace": found.pace}
+    if given in ("", found.form) or Path(file).suffix.lower() != KRL:
+        return options, []
+    told = {"form": given, "controller": library.find("controllers", found.controller)["name"]}
+    if given == "spline":
+        return options, [
+            Fact(
+                "job.form_unknown",
+                "form {form}: {controller} knows no spline blocks and refuses the program; leave the form out, or name "
+                "the controller that has them",
+                **told,
+            )
+        ]
+    return options, [
+        Fact(
+            "job.form_slow",
+            "form {form}: {controller} reaches the feeds in spline blocks; short blocks with C_DIS may be slower than "
+            "simulated",
+            **told,
+        )
+    ]
 
 
 def timed(job: Job | Json) -> dict[str, Any]:
@@ -124,7 +159,7 @@ def _zones(arrays: Mapping[str, Array], placed: Floats, found: Limits) -> Floats
     rapid = np.append(arrays["rapid"], True)
     unknown = np.where(on & np.isfinite(half), half, found.default_zone_mm)
     unknown = np.where(rapid[:-1] | rapid[1:], 0.0, unknown)
-    zones = np.where(arrays["zones"] < 0.0, unknown, arrays["zones"])
+    zones = np.where(arrays["zones"] == -1.0, unknown, arrays["zones"])
     within = np.where(half > 0.0, np.minimum(zones, half), zones)
     scale = 10.0**PLACE_DIGITS
     return np.floor(within * scale + BARELY) / scale

@@ -198,7 +198,7 @@ class Work:
         if self.raster is None:
             plan = plans.plan(data, self.settings, context, told, self.sources)
             return Found(plan, self.planned, words=words)
-        ground = grinding.grind(data, self.raster, self.settings, context, told, _zones)
+        ground = grinding.grind(data, self.raster, self.settings, context, told, _zones(data))
         ground = ground._replace(plan=plans.against(ground.plan, data, context))
         return Found(ground.plan, self.planned, ground, words)
 
@@ -355,9 +355,10 @@ def _lay(path: DocumentObject, obj: DocumentObject, ground: grinding.Ground | No
     path.Proposed = False
 
 
-def _zones(laid: dict[str, Any]) -> Floats:
-    """Of passes as the path's export will have them: KRL's, whose spline blocks pass through the poses."""
-    return zones_written(raster.program(laid), EXPORTED, form="spline")
+def _zones(job: Json) -> Callable[[dict[str, Any]], Floats]:
+    """The zones of laid passes as the path's export will have them: KRL's, in the form of the job's controller."""
+    form = robot_time.form(job)
+    return lambda laid: zones_written(raster.program(laid), EXPORTED, form)
 
 
 def write_programs(obj: DocumentObject, folder: Path | str) -> tuple[list[Path], list[str]]:

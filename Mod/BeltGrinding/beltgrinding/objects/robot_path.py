@@ -15,10 +15,10 @@ import Path
 from ..base import frames
 from ..base.kinds import Array, Context, Floats, Json
 from ..base.stopping import stoppable
-from ..engine import InputError, core
+from ..engine import Fact, InputError, core
 from ..job import robot_time
 from ..job.poses import DEFAULT_FEED
-from ..programs.program import Motion
+from ..programs.program import Motion, corner_of
 from ..programs.languages.roll import RULES, lay
 from ..programs.problems import ordered
 from ..programs.force_device import ForceDevice
@@ -59,7 +59,7 @@ LISTS = (
     (
         "Zones",
         "FloatList",
-        "mm around each pose in which the corner is rounded; negative: not known",
+        "mm around each pose in which the corner is rounded; -1: not known; below: -1 less the share of the feed that is kept",
     ),
     ("Gaps", "IntegerList", "line from which on motions are left out before each pose; 0: none"),
 )
@@ -302,11 +302,14 @@ def force_device(obj: DocumentObject) -> ForceDevice | None:
     return None if machine is None else machine.Proxy.force_device(machine)
 
 
-def _pace(obj: DocumentObject) -> tuple[float, float, float] | None:
-    """The accelerations and the speed of turning of a RobotPath's controller, and of what its job says otherwise; None
-    without a belt machine."""
+def _followed(
+    obj: DocumentObject, file: Path | str, form: str
+) -> tuple[dict[str, Any], list[Fact]]:
+    """As ``robot_time.written``, by a RobotPath's controller and what its job says otherwise; without a belt machine the
+    program sets no accelerations. ``form``: "", unless it is given."""
     if obj.Machine is None:
-        return None
+        options, told = robot_time.written({}, file, form)
+        return {**options, "pace": None}, told
     job: dict[str, Any] = {"robot": {"controller": obj.Machine.Controller}}
     group = obj.getParentGroup()
     if "PathAcceleration" in getattr(group, "PropertiesList", ()):
@@ -315,7 +318,7 @@ def _pace(obj: DocumentObject) -> tuple[float, float, float] | None:
             "angular_acceleration_deg_s2": group.AngularAcceleration,
             "rotation_speed_deg_s": group.RotationSpeed,
         }
-    return robot_time.limits(job).pace
+    return robot_time.written(job, file, form)
 
 
 def follow(obj: DocumentObject) -> None:
@@ -393,16 +396,15 @@ def write(obj: DocumentObject, file: Path | str, **options: Any) -> Any:
             float(force) if force >= 0 else None,
             tool=words["tool"],
             base=words["base"],
+            **corner_of(float(zone)),
         )
-        for frame, feed, force, fast, line in zip(
-            arrays["frames"], feeds, forces, arrays["rapid"], arrays["lines"]
+        for frame, feed, force, fast, line, zone in zip(
+            arrays["frames"], feeds, forces, arrays["rapid"], arrays["lines"], arrays["zones"]
         )
     ]
     options.setdefault("tools", obj.ProgramTool.strip() or None)
     options.setdefault("bases", obj.ProgramBase.strip() or None)
-    options.setdefault("form", "spline")
-    options.setdefault("digits", "robot")
     options.setdefault("force_device", force_device(obj))
-    options.setdefault("pace", _pace(obj))
     options.setdefault("comment", f"{obj.Label}, {len(motions)} poses")
-    return write_program(file, None, motions, **options)
+    followed, told = _followed(obj, file, options.pop("form", ""))
+    return write_program(file, None, motions, **{**followed, **options}) + told

@@ -176,7 +176,9 @@ def changes(found: Plan, number: int) -> list[dict[str, Any]]:
     program = commands.job["programs"][number]
     moving = np.zeros(len(commands), dtype=bool)
     moving[commands.group[~commands.rapid]] = True
-    differ, forces = plans.changed(found), commands.written(commands.force(found.factors))
+    differ, forces = plans.changed(found, files=True), commands.written(
+        commands.force(found.factors)
+    )
     pressed = bool((found.factors[commands.program == number] != 1.0).any())
     for k in np.flatnonzero((commands.program == number) & moving):
         if differ[k] or "feed_mm_s" in program or (pressed and "force_N" in program):
@@ -184,7 +186,9 @@ def changes(found: Plan, number: int) -> list[dict[str, Any]]:
                 "line": int(commands.lines[int(np.argmax(commands.group == k))])
             }
             change["speed_mm_s"] = float(found.new[k])
-            if found.factors[k] != 1.0 or (pressed and "force_N" in program):
+            if not commands.by_hand and (
+                found.factors[k] != 1.0 or (pressed and "force_N" in program)
+            ):
                 change["force_N"] = float(forces[k])
             result.append(change)
     return result

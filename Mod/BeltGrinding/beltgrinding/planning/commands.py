@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from ..base import records
+from ..base import records, schemas
 from ..base.kinds import Array, Facts, Floats, Json
+from ..cell.tool_path import tool_path
 from ..engine import InputError, core
 from ..job import engine_input, poses, robot_time
 from ..job.poses import program_name
@@ -18,6 +19,10 @@ from ..presets import robot as robots
 from ..programs.force_device import of_job
 
 STILL = 1e-9  # mm; less is no way
+SAME = 1e-6  # of a time
+DEFAULTS = schemas.schema("plan")["properties"]
+FASTEST = 2000.0  # mm/s, of robots' tool centre points
+MOST_OVER = 100.0  # times the feed of the contact, that a tool centre point may have
 PATH = (
     "frames",
     "forces",
@@ -82,6 +87,13 @@ class Commands:
         self.of_program = np.repeat(
             np.arange(len(self.arrays)), [len(a["feeds"]) for a in self.arrays]
         )
+        # In the robot's time: the programs' files set no force, nor can they, and one for all is set by hand.
+        self.by_hand = (
+            self.limits is not None
+            and self.device is None
+            and all(self.sources)
+            and bool((given < 0).all())
+        )
         self.kept = np.zeros(len(self), dtype=bool)
         self._keep(settings["keep"])
         self.force_range = self._force_range(
@@ -134,7 +146,7 @@ class Commands:
             mine = (self.of_program == k) & ~self.rapid
             reference = self.forces[mine].max() if mine.any() else 0.0
             if reference > 0.0:
-                own = (self.program == k) & ~self.kept
+                own = (self.program == k) & (~self.kept | self.by_hand)
                 if settings["force_min_N"] > 0.0:
                     least[own] = min(1.0, settings["force_min_N"] / reference)
                 if settings["force_max_N"] > 0.0:
@@ -144,18 +156,50 @@ class Commands:
     def _feed_range(self, settings: Json) -> tuple[Floats, Floats]:
         """Least and greatest feeds of commands, mm/s: as the settings say, and in the robot's time no greater than its
         blocks and its accelerations let it go."""
-        least, greatest = settings["feed_min_mm_s"], settings["feed_max_mm_s"]
-        whole = np.full(len(self), greatest)
+        faster = self._over_contact()
+        least = faster * settings["feed_min_mm_s"]
+        whole = faster * settings["feed_max_mm_s"]
+        own = self.feed()
+        # A limit that nobody has chosen allows what the program has itself.
+        if settings["feed_max_mm_s"] == DEFAULTS["feed_max_mm_s"]["default"]:
+            whole = np.maximum(whole, own)
+        if settings["feed_min_mm_s"] == DEFAULTS["feed_min_mm_s"]["default"]:
+            least = np.minimum(least, own)
+        whole = np.minimum(whole, FASTEST)
         if self.limits is None:
-            return np.full(len(self), least), whole
-        way = self._lengths()
+            return least, whole
+        way, allowed = self._lengths(), whole.copy()
         block = np.where(way > STILL, way / self.limits.least_block_s, np.inf)
         np.minimum.at(whole, self.group, np.where(self.rapid, np.inf, block))
+        # Slower than its own feeds a file's program is not made: that would only cut deeper.
+        whole = np.where(self.too_short(), np.minimum(self.feed(), allowed), whole)
         fastest = np.where(self.kept, self.feed(), whole)
-        seconds, own = self.times(fastest), self.way()
-        reached = np.where(own > STILL, own / np.maximum(seconds, 1e-12), greatest)
-        whole = robot_time.rounded_feeds(np.minimum(whole, reached))
+        reached = self._reached(fastest)
+        whole = robot_time.rounded_feeds(np.where(reached > 0.0, np.minimum(whole, reached), whole))
         return np.minimum(least, whole), whole
+
+    def too_short(self) -> Array:
+        """(commands,) bool: at its own feed a block of a program's file lasts less than the controller needs."""
+        if self.limits is None:
+            return np.zeros(len(self), dtype=bool)
+        lasts = self.motion_seconds(self.feed())
+        sourced = np.array([bool(one) for one in self.sources])[self.program]
+        return sourced & (lasts > 0.0) & (lasts < self.limits.least_block_s * (1.0 - SAME))
+
+    def _over_contact(self) -> Floats:
+        """(commands,) of a program's feed in that of the contact over the work: 1 where the robot holds the tool; the tool
+        centre point of a part in hand may go many times as fast as the belt over the part."""
+        found = np.full(len(self), np.inf)
+        if typed(self.job).cell.holding != "part_in_hand":
+            return np.ones(len(self))
+        over = []
+        for k in range(len(self.arrays)):
+            places = tool_path(self.job, k, []).work_from_contact()[:, :3, 3]
+            over.append(np.append(0.0, np.linalg.norm(np.diff(places, axis=0), axis=1)))
+        way, contact = self._lengths(), np.concatenate(over)
+        share = np.where(way > STILL, way / np.maximum(contact, STILL), np.inf)
+        np.minimum.at(found, self.group, np.where(self.rapid, np.inf, share))
+        return np.where(np.isfinite(found), np.clip(found, 1.0 / MOST_OVER, MOST_OVER), 1.0)
 
     def presses(self) -> bool:
         """Whether forces may change."""
@@ -185,14 +229,27 @@ class Commands:
 
     def times(self, feeds: Floats) -> Array:
         """(commands,) s that they take at feeds (commands,) mm/s by the job's time law; 0 of rapid motions."""
+        lasts = [np.diff(path.times(), prepend=0.0) for path in self._paths(feeds)]
+        own = np.where(self.rapid, 0.0, np.concatenate(lasts))
+        return np.bincount(self.group, own, len(self))
+
+    def _reached(self, feeds: Floats) -> Array:
+        """(commands,) mm/s: the greatest speed that the job's time law lets them come to at feeds (commands,) mm/s; less
+        of a feed would only take longer. 0 of rapid motions."""
+        speeds = np.concatenate([path.greatest_speeds() for path in self._paths(feeds)])
+        found = np.zeros(len(self))
+        np.maximum.at(found, self.group, np.where(self.rapid, 0.0, speeds))
+        return found
+
+    def _paths(self, feeds: Floats) -> list[core.ToolPath]:
+        """The programs' paths at feeds (commands,) mm/s, by the job's time law."""
         new = np.where(self.rapid, self.feeds, feeds[self.group])
-        lasts = []
+        paths = []
         for k, arrays in enumerate(self.arrays):
             given: dict[str, Any] = {name: arrays[name] for name in PATH}
             given.update(feeds=new[self.of_program == k], time_law=self._time_law)
-            lasts.append(np.diff(core.ToolPath(**given).times(), prepend=0.0))
-        own = np.where(self.rapid, 0.0, np.concatenate(lasts))
-        return np.bincount(self.group, own, len(self))
+            paths.append(core.ToolPath(**given))
+        return paths
 
     def way(self) -> Array:
         """(commands,) mm, 0 of rapid motions."""
@@ -232,6 +289,10 @@ class Commands:
         new = np.where(self.rapid, self.feeds, feeds[self.group])
         given = np.concatenate([a["forces"] for a in self.arrays])
         factor = np.ones(len(given)) if factors is None else factors[self.group]
+        machine = self.job["belt_machine"]
+        if self.by_hand:
+            machine = {**machine, "force_N": self.hand_force(factor)}
+            factor = np.ones(len(given))
         forces = np.where(self.rapid | (factor == 1.0), given, self.forces * factor)
         if self.device is not None:
             for k in np.flatnonzero(~self.rapid & (forces >= 0.0)):
@@ -247,4 +308,12 @@ class Commands:
             listed = poses.list_poses({**arrays, **changed})
             programs.append({**kept, "poses": listed})
             begin = end
-        return {**self.job, "programs": programs}
+        return {**self.job, "belt_machine": machine, "programs": programs}
+
+    def hand_force(self, factors: Floats) -> float:
+        """N that is set by hand on the belt machine, with the one factor of ``factors``; in the robot's time to a tenth."""
+        force = float(self.job["belt_machine"]["force_N"])
+        factor = float(factors[0])
+        if factor == 1.0:
+            return force
+        return force * factor if self.limits is None else round(force * factor, FORCE_DIGITS)

@@ -23,6 +23,7 @@ from ..programs.force_device import of_job
 from ..raster import raster_path
 from ..simulation import convergence
 from . import reasons, rounds
+from .limits import GENTLER
 
 QUICK = {"rounds": 3, "check": False, "levels": 0}
 TRIES = 6  # passes, at most
@@ -37,7 +38,6 @@ MOST_SMOOTHING = 4.0  # of the contact's length
 MOST_REPEATS = 20
 MOST_OF = 0.9  # of the area that is not done at the least feed: the repeats are for it
 GENTLE = 0.2  # of the force: the least where none is given, so that borders and ends of passes can be spared
-GENTLER = 0.05  # in the robot's time, which is slow at ends and turns
 FINAL = 0.5  # of the time: the last plan
 
 

@@ -30,6 +30,7 @@ ITERATIONS, LINEARISED = 2000, 50
 SETTLED = 1e-4  # mm/s, N
 SWEEPS = 100  # a path that comes back to a line needs a few
 AT, EXACT = 1e-3, 1e-6  # relative, of a limit
+GENTLER = 0.05  # of the force, in the robot's time, which is slow at ends and turns
 BELOW = 1.0 - 1e-3  # of the limit of pressure, to which what is above it is brought
 YIELDING = 0.5  # least exponent with which pressure follows a lowered force: that of a line contact
 
@@ -40,11 +41,15 @@ Allowed: TypeAlias = Callable[[float, float], float]  # of a value and mm: the n
 
 def within_device(job: Job, settings: dict[str, Any]) -> dict[str, Any]:
     """The settings of a plan within what the job's force device sets: its range, and its ramp, which is also the
-    default. Raises InputError where nothing is left."""
+    default; in the robot's time forces may be lowered then to ``GENTLER`` of the job's, unless the settings say what they
+    may. Raises InputError where nothing is left."""
     device = of_job(job)
     if device is None:
         return settings
     least, greatest = settings["force_min_N"], settings["force_max_N"]
+    machine = job.belt_machine
+    if not least and not greatest and settings["timing"] == "robot" and machine.control == "force":
+        least = min(GENTLER * machine.force_N, device.greatest_N or math.inf)
     most = device.greatest_N or math.inf
     if (least and least > most) or 0.0 < greatest < device.least_N:
         raise InputError(

@@ -40,6 +40,9 @@ WORSE = 1e-9  # of the area
 NEARER = 0.95  # of the rms
 FARTHER = 2.0  # times what a round may change, after one that was better
 NEARER_BY = 0.5  # after another
+LESS_FORCE = (
+    0.01  # of the area, cut too deep at the greatest feed, to say that less force would help
+)
 LOWERED = 6  # simulations, at most, in which forces are lowered to the limit of pressure
 PEAKS = 0.01  # of the limit of pressure, by which two runs may differ
 
@@ -207,7 +210,7 @@ def _by_rounds(
     feeds, factors = old, np.ones(len(commands))
     best: Trial | None = None
     stalled, reach = 0, 1.0
-    with_forces = commands.presses()
+    with_forces = commands.presses() and not commands.by_hand
     for number in range(tries):
         part = context.part(number / whole, (number + 1) / whole)
         trial = trials.simulate(feeds, factors, part, with_forces)
@@ -338,6 +341,8 @@ def _below_pressure(trials: Trials, best: Trial) -> Trial:
         force = limits.below_pressure(
             best.result, trials.commands, best.feeds, best.factors, trials.settings
         )
+        if trials.commands.by_hand:
+            force = np.full(len(force), force.min())
         if (force >= best.factors * (1.0 - SAME)).all():
             break  # all that may be lowered is
         trials.forget(best)
@@ -345,9 +350,13 @@ def _below_pressure(trials: Trials, best: Trial) -> Trial:
     return best
 
 
-def changed(found: Plan) -> Array:
-    """(commands,) bool: a ``Plan`` changes its feed or its force."""
-    return (abs(found.new - found.old) > SAME * found.old) | (abs(found.factors - 1.0) > SAME)
+def changed(found: Plan, files: bool = False) -> Array:
+    """(commands,) bool: a ``Plan`` changes its feed or its force. ``files``: in the programs' files, where a force that is
+    set by hand does not stand."""
+    feeds = abs(found.new - found.old) > SAME * found.old
+    if files and found.commands.by_hand:
+        return feeds
+    return feeds | (abs(found.factors - 1.0) > SAME)
 
 
 def summary(found: Plan) -> dict[str, Any]:
@@ -383,4 +392,25 @@ def summary(found: Plan) -> dict[str, Any]:
             "greatest": float(found.new.max()),
         },
         "force_N": {"least": float(forces.min()), "greatest": float(forces.max())},
+        **_forces_and_blocks(found),
+    }
+
+
+def _forces_and_blocks(found: Plan) -> dict[str, Any]:
+    """Of ``summary``: the one force that is set by hand, before and after; whether forces may change and less would help;
+    how many commands keep feeds of their own that are too fast for their blocks."""
+    commands = found.commands
+    machine = typed(commands.job).belt_machine
+    by_hand = None
+    if commands.by_hand and commands.presses():
+        by_hand = {
+            "before_N": float(machine.force_N),
+            "after_N": commands.hand_force(found.factors),
+        }
+    fixed = machine.control == "force" and not commands.presses()
+    short = commands.too_short() & (found.new >= found.old * (1.0 - SAME))
+    return {
+        "force_by_hand": by_hand,
+        "less_force_would_help": fixed and found.why["shares"]["fastest_feed"] > LESS_FORCE,
+        "short_blocks": int(short.sum()),
     }

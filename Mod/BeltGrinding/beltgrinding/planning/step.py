@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from .commands import Commands
 
 SAME = 1e-9  # relative, of a feed or a force
+HAND_FORCE = 1.5  # factor by which a round may change the one force that is set by hand
+HAND_TRIES = 6  # of such forces
+HAND_GAIN = 0.005  # of the area, that a lower one of them must bring
 HURRIED = {"inner_share": 0.7, "inner_cost": 0.1}  # of the band; of what deviations cost beyond
 
 # Feeds (commands,) and factors on forces (commands,) for the next round, and what is told of it, or by the solver.
@@ -128,15 +131,25 @@ def following(
     """
     begun = time.perf_counter()
     seen = _Seen(commands, result, feeds, factors, settings)
-    if forces:
+    by_hand = commands.by_hand and commands.presses()
+    if by_hand:
+        forces = False
+        if time_cost is None:
+            new, force, found = _feeds_and_one_force(seen, reach, context)
+        else:  # the force stays
+            seen.least = seen.greatest = factors
+            new, force, found = _feeds_first(seen, time_cost, reach, context)
+    elif forces:
         new, force, found = _feeds_and_forces(seen, reach, context)
     else:
         new, force, found = _feeds_first(seen, time_cost, reach, context)
     force[abs(force - 1.0) <= SAME] = 1.0
-    new, force = np.where(seen.moved, new, feeds), np.where(seen.moved, force, factors)
+    new = np.where(seen.moved, new, feeds)
     matter = with_force.energy(seen.influence, seen.weight)
     new = limits.feeds(commands, new, matter, settings)
-    force = limits.factors(commands, force, matter, new, settings)
+    if not by_hand:
+        force = np.where(seen.moved, force, factors)
+        force = limits.factors(commands, force, matter, new, settings)
     # What the feeds and forces in the end should do: limits may have changed them.
     longer = seen.pace.longer(new) ** seen.power
     if forces:
@@ -193,6 +206,42 @@ def _feeds_first(
     new = pace.feeds(np.clip(longer, pace.shortest, pace.longest))
     rest = wanted / pace.longer(new) ** power
     return new, np.clip(factors * rest ** (1.0 / alpha), seen.least, seen.greatest), found
+
+
+def _feeds_and_one_force(seen: _Seen, reach: float, context: core.RunContext) -> Step:
+    """As ``_feeds_first``, with the one force for all that is set by hand: of several, the one with which most of the area
+    is predicted to be in tolerance."""
+    settings, pace = seen.settings, seen.pace
+    now = float(seen.factors[0])
+    most = min(settings["most_change"], HAND_FORCE) ** reach
+    least, greatest = float(seen.least.max()), float(max(seen.greatest.min(), seen.least.max()))
+    low, high = max(least, now / most), min(greatest, now * most)
+    tried = {now, *np.geomspace(min(low, high), high, HAND_TRIES).tolist()}
+    solver = {"smoothing": settings["smoothing"], "accuracy": with_force.ACCURACY}
+    influence, deviation, half, weight = seen.solver()
+    tries: list[tuple[float, float, Floats, dict[str, Any]]] = []
+    for factor in sorted(one for one in tried if least - SAME <= one <= greatest + SAME):
+        stronger = (factor / now) ** seen.alpha
+        fastest, slowest = seen.within(
+            pace.shortest**seen.power * stronger,
+            pace.longest**seen.power * stronger,
+            settings["most_change"] ** reach,
+        )
+        # What keeps its feed removes as much more as the force does.
+        fastest = np.where(seen.moved, fastest, stronger)
+        slowest = np.where(seen.moved, slowest, stronger)
+        found = core.plan_dwell(
+            influence, deviation, half, weight, fastest, slowest, 1.0 / seen.feeds, solver,
+            context.part(0.0, 0.0), np.zeros(0),
+        )  # fmt: skip
+        left = deviation - _removed(influence, found["factor"] - 1.0, len(deviation))
+        share = float(weight[abs(left) <= half].sum() / weight.sum())
+        longer = (found["factor"] / stronger) ** (1.0 / seen.power)
+        tries.append((share, factor, longer, found))
+    most = max(one[0] for one in tries) - HAND_GAIN  # what is a little better is not worth the time
+    _, factor, longer, found = max((one for one in tries if one[0] >= most), key=lambda one: one[1])
+    new = pace.feeds(np.clip(longer, pace.shortest, pace.longest))
+    return new, np.full(len(new), factor), found
 
 
 def _feeds_and_forces(seen: _Seen, reach: float, context: core.RunContext) -> Step:

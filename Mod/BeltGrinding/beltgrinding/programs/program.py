@@ -167,6 +167,8 @@ class Motion:
     # mm from the target within which the corner is rounded; 0: the robot stands still there; inf:
     # it passes through, the target is no corner; None: not known (the job's default zone)
     zone_mm: Optional[float] = None
+    # Of the feed, that the robot keeps through the corner, which is rounded as far as that takes (Fanuc's CNT)
+    corner_share: Optional[float] = None
     # How the tool turns on the way: from the start's orientation to the target's; "path": so against an
     # arc's tangent; "hold": it keeps the start's; "hold path": it keeps that against the tangent
     turn: str = ""
@@ -268,7 +270,7 @@ class Program:
     ) -> dict[str, Array]:
         """Poses as the simulator takes them: dict of frames (n, 4, 4) in mm, feeds (n,) in mm/s,
         forces (n,) in N (-1: none), rapid (n,) bool, lines (n,) int, zones (n,) in mm (0: exact
-        stop, -1: not known), gaps (n,) int: the line from which on motions are left out before this
+        stop, -1: not known, below: as ``zone_of_share``, ``ON_CURVE``), gaps (n,) int: the line from which on motions are left out before this
         pose, 0: none. All poses are in one frame (``one_frame``); what cannot be brought into it is
         left out and becomes a problem. Arcs become chords of ``CHORD_ERROR``, rounded where they meet; after a
         joint target, and after a gap, the robot arrives by a rapid motion. Between points of a spline there is no
@@ -361,11 +363,35 @@ def work_of(text: str) -> int:
     return 1 + len(text) // 25
 
 
+ON_CURVE = -3.0  # the zone, as paths have it, of a spline's point, through which the robot passes
+
+
+def zone_of_share(share: float) -> float:
+    """The zone, as paths have it, of a corner through which the robot keeps a share (above 0, at most 1) of its feed."""
+    return -1.0 - share
+
+
+def share_of_zone(zone: float) -> float | None:
+    """The share that ``zone_of_share`` has made a zone of; None for a length or a zone that is not known."""
+    return -1.0 - zone if ON_CURVE < zone < -1.0 else None
+
+
+def corner_of(zone: float) -> dict[str, float]:
+    """The arguments of a ``Motion`` for a zone as paths have it."""
+    share = share_of_zone(zone)
+    if share is not None:
+        return {"corner_share": share}
+    return {"zone_mm": zone} if zone >= 0.0 else {}
+
+
 def _zone(motion: Motion, following: Motion | None) -> float:
-    """mm; -1: not known; inf: the robot passes through."""
+    """mm; -1: not known; below: as ``zone_of_share``; ``ON_CURVE``; inf: the robot passes through a chord's end."""
+    joined = following is not None and motion.kind == following.kind == "SPL"
+    if joined and (motion.zone_mm is None or math.isinf(motion.zone_mm)):
+        return ON_CURVE
     if motion.zone_mm is not None:
         return motion.zone_mm
-    return math.inf if following and motion.kind == following.kind == "SPL" else -1.0
+    return zone_of_share(motion.corner_share) if motion.corner_share else -1.0
 
 
 def _finite(zones: Floats, frames: Floats) -> Floats:

@@ -20,7 +20,7 @@ from ..job import engine_input, load as jobs, machine as machines, spacing as sa
 from ..job.settings import Job
 from ..job.typed import typed
 from ..job.workpiece import read_design
-from ..programs.program import Motion, Program
+from ..programs.program import Motion, Program, corner_of
 from . import around, direction, filling, footprint, passes, path_check, reachable, region
 from .clearing import Clearing
 from .entry import Entry
@@ -528,8 +528,8 @@ def program(result: dict[str, Any], tool: str = "", base: str = "") -> Program:
     for pose, (feed, force, rapid, zone) in zip(result["frames"], rows):
         kind = "PTP" if rapid else "LIN"
         given = None if force < 0 else force
-        corner = None if zone < 0 else zone
-        made.motions.append(Motion(kind, pose, 0, "", feed, given, tool, base, zone_mm=corner))
+        corner = corner_of(zone)
+        made.motions.append(Motion(kind, pose, 0, "", feed, given, tool, base, **corner))
     return made
 
 

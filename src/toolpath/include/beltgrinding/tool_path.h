@@ -21,7 +21,7 @@ struct PathPose {
     bool rapid = false;   ///< a positioning move (PTP): nothing is ground on the way to this pose
     int line = 0;         ///< line of the source file, from 1; 0: unknown
     /// mm before and after the pose within which the robot rounds the corner; 0: it stands still
-    /// there; negative: unknown (the time law's default zone)
+    /// there; -1: unknown (the time law's default zone); less: by ZoneCode (motion_plan.h)
     double zone = -1.0;
     /// rad; the robot's joints there, where the program gives them (a joint target)
     std::optional<Eigen::Matrix<double, 6, 1>> joints = {};

@@ -43,7 +43,7 @@ def text(sheet: Sheet) -> bytes:
         rows += [head] if head else []
         zone = sheet.blend_mm if step.zone is None else step.zone
         stops = zone == 0.0 or k + 1 == len(sheet.steps)
-        end = "FINE" if stops else "CNT100"
+        end = "FINE" if stops else f"CNT{round(100.0 * (step.share or 1.0))}"
         if step.kind == "PTP":
             rows.append(f"J P[{step.pose + 1}] {PTP}% {'FINE' if step.zone is None else end}")
             continue

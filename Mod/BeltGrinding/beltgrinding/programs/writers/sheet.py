@@ -27,6 +27,7 @@ class Step:
     tool: int  # row of the tools
     base: int
     zone: float | None = None  # mm, 0: it stops there; None: the program's blend
+    share: float | None = None  # of the feed, kept through the corner; None: by the zone
     note: str = ""  # what a comment before it says
 
 

@@ -243,6 +243,7 @@ def _sheet(motions: Iterable[Motion], tool_rows: Frames, base_rows: Frames) -> S
         )
         if motion.zone_mm is not None and math.isfinite(motion.zone_mm):
             step.zone = max(0.0, motion.zone_mm)
+        step.share = motion.corner_share
         step.tool, step.base, step.note = (
             tool_rows.row(motion.tool),
             base_rows.row(motion.base),

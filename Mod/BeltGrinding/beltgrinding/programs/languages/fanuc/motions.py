@@ -44,13 +44,18 @@ OPTIONS = re.compile(
 
 def zeither(rest: str) -> float | None:
     """mm by the termination type in a motion's additions: FINE stops; CD is the distance from the
-    corner, CR its radius (the same where the path turns by 90 degrees); CNT is a share of the speed
-    and no length, so its zone is not known, of CNT0 neither: nearly a stop without being one.
+    corner, CR its radius (the same where the path turns by 90 degrees); CNT is no length (``share``).
     """
     match = re.search(r"\b(?:(FINE)|C[DR]\s*(\d{1,4}))(?=\s|$)", rest)
     if not match:
         return None
     return 0.0 if match.group(1) else float(match.group(2))
+
+
+def share(rest: str) -> float | None:
+    """Of the speed, that CNT keeps through the corner; None without CNT, and of CNT0: nearly a stop without being one."""
+    match = re.search(r"\bCNT\s*(\d{1,3})(?=\s|$)", rest)
+    return min(int(match.group(1)), 100) / 100.0 or None if match else None
 
 
 class Motions(PositionRegisters):
@@ -111,7 +116,7 @@ class Motions(PositionRegisters):
             for motion, _ in motions:
                 motion.speed_mm_s = speed
         for motion, _ in motions:
-            motion.zone_mm = zeither(rest)
+            motion.zone_mm, motion.corner_share = zeither(rest), share(rest)
         for motion, _ in motions:
             (self.add_arc_point if kind == "A" else self.add)(motion)
 

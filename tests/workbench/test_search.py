@@ -79,6 +79,16 @@ def test_geometry_says_along_which_way_the_wheel_gets_to_a_trough():
     assert min(one.share for one in smaller.found) > 0.95
 
 
+def test_geometry_knows_belts_too():
+    belt = {"kind": "free_belt", "free_run": {"length_mm": 150, "width_mm": 10}}
+    job = jobs.validate({**job_of(plate()), "belt_machine": belt})
+    settings = raster_path.validate({})
+    ways = reach_map.ways(job, settings)
+    seen = reach_map.look(job, settings, ways[:2], (0.0,))
+    assert [one.share for one in seen.found] == [1.0] * len(seen.found) and seen.fits.all()
+    assert len(reach_map.distinct([*ways, *ways])) == len(ways)
+
+
 def test_candidates_come_by_what_the_wheel_gets_to_and_other_wheels_between_them():
     own, other = ({"wheel": {"radius_mm": r, "width_mm": 5.0}} for r in (20.0, 8.0))
     first = {"along": "u", "direction": [1.0, 0, 0], "belt_angle_deg": 0.0}
@@ -164,6 +174,36 @@ def test_wheels_are_sizes_of_a_series_or_given():
     assert [one["wheel"]["radius_mm"] for one in machines] == [10.0]  # the own one is none
     platen = jobs.validate({**job_of(plate()), "belt_machine": {"kind": "free_belt"}})
     assert wheels.mounted(platen, found) == ()
+
+
+def tried(machine=None, shares=None, **wanted):
+    none = dict.fromkeys(
+        ("slowest_feed", "shared", "fringe", "border", "no_room", "no_motion"), 0.0
+    )
+    settings = raster_path.validate({"along": "direction", **wanted})
+    machine = machine or job_of(plate())["belt_machine"]
+    up = np.array([0.0, 0.0, 1.0])
+    feeds = np.ones(3), np.ones(3)
+    return by_rules.Tried(
+        *("first", machine, settings, 0.5, feeds, {**none, **(shares or {})}, 0.2),
+        *(6.0, 8.0, 3.0, 40, 10.0, 1, up),
+    )
+
+
+def test_moves_answer_to_what_stays_out():
+    def names(one, fixed=()):
+        return sorted(move[0] for _, move in moves.Moves(fixed)(one))
+
+    assert names(tried()) == ["force"]  # 20 % are cut too deep
+    position = {**job_of(plate())["belt_machine"], "control": "position"}
+    assert names(tried(position)) == []
+    hidden = tried(shares={"no_room": 0.3})
+    assert names(hidden) == ["belt_angle"] * 2 + ["direction"] * 2 + ["force"]
+    assert names(hidden, ("belt_angle_deg", "along", "force_N")) == []
+    leaned = tried(shares={"shared": 0.2}, belt_angle_deg=90.0)
+    told = {move[0]: move[2] for _, move in moves.Moves()(leaned)}
+    assert told["lean"]["max_tilt_deg"] == 5.0 and told["belt_angle"]["belt_angle_deg"] == 67.5
+    assert told["force"]["force_N"] == 7.5 and told["force"]["belt_angle_deg"] == 90.0
 
 
 def test_turns_are_about_the_mean_normal():

@@ -35,7 +35,7 @@ class Moves:
         if one.wanted["max_tilt_deg"] > 0.0 and shares["shared"] + shares["fringe"] > MATTERS:
             lean = round(LESS_LEAN * one.wanted["max_tilt_deg"], 1)
             found += self._changed(one, 0.1 * left, "lean", "max_tilt_deg", lean)
-        if one.below > MATTERS:
+        if one.below > MATTERS and one.machine["control"] == "force":
             force = one.wanted["force_N"] or one.machine["force_N"]
             value = round(GENTLER * force, 1)
             if value > 0.0:

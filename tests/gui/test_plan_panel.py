@@ -152,6 +152,9 @@ def test_faces_are_ground_from_nothing_by_one_button():
     plan, path = doc.Plan, doc.RasterPath
     assert plan.LayPasses and path.Proposed
     before = [list(path.Feeds), list(path.Poses)]
+    settle()
+    assert field("plan").isEnabled() and not plan.Fingerprint, "nothing begins by itself"
+    press("Plan")
     wait(lambda: plan.Fingerprint, 400)
     settle()
     assert [list(path.Feeds), list(path.Poses)] == before, "nothing is changed before it is applied"

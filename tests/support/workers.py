@@ -44,7 +44,7 @@ def worker_processes(pid):
             words = Path("/proc", str(child), "cmdline").read_bytes().split(b"\0")
         except OSError:
             continue
-        if any(b"beltgrinding.studies.worker" in word for word in words):
+        if any(b"beltgrinding.base.worker" in word for word in words):
             found.append(child)
     return found
 

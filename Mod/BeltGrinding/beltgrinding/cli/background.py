@@ -9,9 +9,10 @@ BAR = 24  # characters
 KNOWN, SETTLED = 0.02, 2.0  # of the work, and s: before, nobody knows how long it takes
 
 
-def run(work, quiet=False):
+def run(work, quiet=False, interrupted=None):
     """``work(context)``'s result. It runs in a thread of its own, so that Ctrl-C reaches the main
-    thread while C++ computes; then the context is cancelled. Raises what the work raises.
+    thread while C++ computes; then the context is cancelled, unless ``interrupted()`` takes it for something else and says
+    so. Raises what the work raises.
     """
     from ..base.files import interruptible
     from ..engine import core
@@ -36,8 +37,7 @@ def run(work, quiet=False):
         threading.Thread(target=_show_progress, args=(context, done), daemon=True).start()
     try:
         with interruptible():
-            while not computing.acquire(timeout=0.1):  # another thread may have taken the signal
-                pass
+            _wait(computing, interrupted)
     except KeyboardInterrupt:
         context.cancel()
         if not done.is_set():
@@ -57,6 +57,17 @@ def progress_line(share, elapsed):
     left = round(elapsed * (1.0 - share) / share)
     minutes, seconds = divmod(left, 60)
     return f"{line}, {f'{minutes} min ' if minutes else ''}{seconds} s left"
+
+
+def _wait(computing, interrupted):
+    while True:
+        try:
+            while not computing.acquire(timeout=0.1):  # another thread may have taken the signal
+                pass
+            return
+        except KeyboardInterrupt:
+            if interrupted is None or not interrupted():
+                raise
 
 
 def _show_progress(context, done):

@@ -1,8 +1,9 @@
 """From faces to a program that grinds them into tolerance."""
 
+import functools
 from pathlib import Path
 
-from . import background, outcome, outputs, plan, rounds_table, settings
+from . import background, outcome, outputs, plan, rounds_table, searching, settings
 from .messages import print_text
 from .program import add_form
 
@@ -41,6 +42,7 @@ def add(commands):
         help=f"the program's file in the folder; its suffix says the language ({PROGRAM})",
     )
     add_form(grind)
+    searching.add(grind)
     grind.add_argument("-q", "--quiet", action="store_true", help="no progress, no summary")
     outcome.add(grind)
     outputs.add(grind)
@@ -62,43 +64,48 @@ def _grind(arguments):
         )
     _check_name(arguments.program, arguments.form)
     outcome.check(arguments)
+    searching.budget(arguments)
+    searching.wheels(arguments)
     wanted = plans.validate(settings.given(arguments.settings, arguments.set))
     passes = settings.given(arguments.raster, arguments.set_raster, "--set-raster")
     raster_path.validate(passes)
 
-    told = None if arguments.quiet else rounds_table.Table().told
+    watched = searching.Watched(None if arguments.quiet else rounds_table.Table().told)
+    told = watched.told
     out, program = arguments.output, Path(arguments.output, arguments.program)
-    notes = []
+    notes, searched = [], []
 
     def write(found, entry=None):
         """Entries of the program's file in a job."""
-        apply.write(found, out, [arguments.part], arguments.force, entry)
+        apply.write(found, out, [arguments.part], arguments.force, entry, *searched)
         notes[:] = _write_program(found, program, arguments.force, arguments.form)
         return [{"file": program.name}]
 
     def work(context):
         job, first = _job(arguments, context)
         form = robot_time.form(job, arguments.form)
-
-        def zones(laid):
-            return zones_written(raster_path.program(laid), arguments.program, form)
-
+        zones = functools.partial(zones_written, name=arguments.program, form=form)
         _check_name(arguments.program, arguments.form, job)
         apply.check({**job, "programs": []}, out, [arguments.part], arguments.force)
         begun = context.part(0.0, plan.PLANNING if wanted["check"] else 1.0)
-        searched = {**wanted, "check": False}
-        found = grinding.grind(job, {**first, **passes}, searched, begun, told, zones)
+        unchecked = {**wanted, "check": False}
+        search = searching.search(arguments, job, passes, of_a_job=not first)
+        found = grinding.grind(
+            job, {**first, **passes}, unchecked, begun, told, zones, search, lambda: watched.enough
+        )
+        searched[:] = [found.search]
         if not wanted["check"]:
             return found, None
         rest = context.part(plan.PLANNING, 1.0)
         return found, from_file.check(found.plan, out, write, rest, told, before=False)
 
-    ground, checked = background.run(work, arguments.quiet)
+    ground, checked = background.run(work, arguments.quiet, watched.interrupted)
     found = ground.plan if checked is None else checked.plan
     write(found, None if checked is None else checked.entry)
     arguments.messages.print_warnings(ground.laid["warnings"])
     arguments.messages.print_written(notes)
     plan.tell_checked(arguments, checked)
+    searching.tell(arguments, ground)
     if not arguments.quiet:
         print_text(plan.text(plans.summary(found), checked is not None, before=False))
         print_text(f"program, job and result in {out}")

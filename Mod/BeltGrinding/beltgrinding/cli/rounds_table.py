@@ -3,8 +3,19 @@
 from .messages import print_text
 
 ROUNDS = ("round", "in tol. %", "too much %", "too deep %", "rms mm", "time s", "")
-PASSES = ("passes", "apart mm", "run-out mm", "times", "poses", "in tol. %", "")
-WIDTHS = {ROUNDS: (5, 9, 10, 10, 6, 7, 0), PASSES: (6, 8, 10, 5, 6, 9, 0)}
+PASSES = (
+    "passes",
+    "wheel mm",
+    "along",
+    "belt deg",
+    "apart mm",
+    "run-out mm",
+    "times",
+    "poses",
+    "in tol. %",
+    "",
+)
+WIDTHS = {ROUNDS: (5, 9, 10, 10, 6, 7, 0), PASSES: (6, 13, 17, 8, 8, 10, 5, 6, 9, 0)}
 
 
 class Table:
@@ -29,14 +40,30 @@ def _line(head, texts):
 
 
 def _passes(one):
+    words = [] if one["better"] else ["not better"]
+    words += ["full plan"] if one["change"] == "full" else []
     return (
+        _wheel(one["wheel"]),
+        _along(one),
+        f"{one['belt_angle_deg']:.1f}",
         f"{one['step_over_mm']:.2f}",
         f"{one['run_out_mm']:.2f}",
         str(one["repeats"]),
         str(one["poses"]),
         f"{100 * one['in_tolerance']:.1f}",
-        "" if one["better"] else "not better",
+        ", ".join(words),
     )
+
+
+def _wheel(one):
+    crown = f"c{one['crown_radius_mm']:g}" if one["crown_radius_mm"] else ""
+    return f"{one['radius_mm']:g} x {one['width_mm']:g}{crown}"
+
+
+def _along(one):
+    if one["along"] != "direction":
+        return one["along"]
+    return " ".join(f"{value:.2f}" for value in one["direction"])
 
 
 def _round(one):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import json
 import os
@@ -12,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..base.files import cannot_be_written, write_whole
-from ..base.kinds import Array, Context, Floats, Json
+from ..base.kinds import Array, Context, Json
 from ..engine import InputError
 from ..cell.tool_path import tool_path
 from ..job import robot_time
@@ -20,7 +21,6 @@ from ..planning import apply, grinding, pictures, rounds as plans
 from ..programs.force_device import ForceDevice
 from ..programs.patch.patch import patch
 from ..programs.writers.writer import zones_written
-from ..raster import raster_path as raster
 from . import job_inputs, result_files
 from .belt_machine import BeltMachine
 from .job_data import KEYS as JOB_KEYS, children, inspection, required
@@ -198,12 +198,11 @@ class Work:
         if self.raster is None:
             plan = plans.plan(data, self.settings, context, told, self.sources)
             return Found(plan, self.planned, words=words)
-        ground = grinding.grind(data, self.raster, self.settings, context, told, _zones(data))
+        # Zones as the path's export will have them: KRL's, in the form of the job's controller.
+        zones = functools.partial(zones_written, name=EXPORTED, form=robot_time.form(data))
+        ground = grinding.grind(data, self.raster, self.settings, context, told, zones)
         ground = ground._replace(plan=plans.against(ground.plan, data, context))
         return Found(ground.plan, self.planned, ground, words)
-
-
-EXPORTED = "passes.src"  # as what a path is exported
 
 
 class Found:
@@ -353,12 +352,6 @@ def _lay(path: DocumentObject, obj: DocumentObject, ground: grinding.Ground | No
     else:
         take(path, settings, ground.laid)
     path.Proposed = False
-
-
-def _zones(job: Json) -> Callable[[dict[str, Any]], Floats]:
-    """The zones of laid passes as the path's export will have them: KRL's, in the form of the job's controller."""
-    form = robot_time.form(job)
-    return lambda laid: zones_written(raster.program(laid), EXPORTED, form)
 
 
 def write_programs(obj: DocumentObject, folder: Path | str) -> tuple[list[Path], list[str]]:

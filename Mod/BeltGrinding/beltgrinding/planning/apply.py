@@ -37,11 +37,13 @@ def write(
     read: Iterable[Path | str] = (),
     force: bool = False,
     from_file: Json | None = None,
+    search: Json | None = None,
 ) -> tuple[list[str], Facts]:
     """Writes a ``Plan`` into ``folder``: job.json (the job with the planned programs), the programs' files with new
     feeds and nothing else changed, feeds.csv, plan.json, plan.png, and the result in the folder ``result``. Never over a file
     of ``read`` or of the job's inputs; over others only if a plan wrote them, or by ``force``. ``from_file``: what the
-    written programs do, for plan.json (``from_file.Checked``).
+    written programs do, for plan.json (``from_file.Checked``); ``search``: what was searched, likewise
+    (``grinding.Ground``).
 
     Returns (names of the program files that were written, warnings: why a program's file could not be). Such a
     program stands in job.json pose by pose. Raises InputError.
@@ -76,6 +78,8 @@ def write(
     summary = plans.summary(found)
     if from_file is not None:
         summary["from_file"] = dict(from_file)
+    if search is not None:
+        summary["search"] = dict(search)
     drawn = pictures.composed(pictures.draw(found), found.why["shares"])
     for name, data in (
         (JOB, (job + "\n").encode()),

@@ -29,6 +29,8 @@ ANGLES = (0.0, 45.0, 90.0, 135.0)  # degrees, from the direction in which the fa
 BELT_ANGLES = (0.0, 90.0)  # of a belt, whose contacts take their time
 ROUND = 0.75  # of a turn, that coarse samples of closed faces take at least
 STILL = 1e-6  # mm; less is no way
+SAME_WAY = 0.99  # cosine: such directions are one
+UNBENT = 1e-4  # square of the normals' turn, radians: flat faces
 FLAT = 0.3  # of its unit length, the mean of the normals of faces that look one way
 
 

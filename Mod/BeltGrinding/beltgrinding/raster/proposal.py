@@ -66,7 +66,7 @@ def propose(job: Job | Json, context: Context = None) -> dict[str, Any]:
         settings = _settings(along)
         extent = float(np.ptp(field.points @ along))
         wheel = _wheel(job, shape, field, settings, area, extent, notes, context)
-        machine = _mounted(machine, *wheel)
+        machine = mounted(machine, *wheel)
         tool: dict[str, float] = {
             "wheel_radius_mm": machine.wheel.radius_mm,
             "wheel_width_mm": machine.wheel.width_mm,
@@ -152,13 +152,13 @@ def _bends(
     return along, across, areas
 
 
-def _mounted(machine: BeltMachine, radius: float, width: float) -> BeltMachine:
-    """A job's belt machine with a cylindrical wheel, and with rim and force to it."""
+def mounted(machine: BeltMachine, radius: float, width: float, crown: float = 0.0) -> BeltMachine:
+    """A job's belt machine with a wheel, and with rim and force to it; ``crown``: radius mm, 0: a cylinder."""
     rim = 0.5 * round(2.0 * min(RIM_SHARE * radius, RIM_MOST))
     force = min(max(FORCE_PER_WIDTH * width, FORCES[0]), FORCES[1])
     return replace(
         machine,
-        wheel=Wheel(radius_mm=radius, width_mm=width, crown_radius_mm=0.0, profile_mm=()),
+        wheel=Wheel(radius_mm=radius, width_mm=width, crown_radius_mm=crown, profile_mm=()),
         compliance=replace(machine.compliance, rim_thickness_mm=rim, layers=()),
         force_N=5.0 * round(force / 5.0),
     )
@@ -257,7 +257,7 @@ def _that_fits(
     clearing = Clearing(job, shape, validate({"max_tilt_deg": 0.0}), [], context)
 
     def unfit(radius: float, width: float) -> float:
-        machine = _mounted(job.belt_machine, radius, width)
+        machine = mounted(job.belt_machine, radius, width)
         trial = clearing.with_wheel(replace(job, belt_machine=machine))
         return float(areas[~trial.fits_upright(frames)].sum() / max(areas.sum(), 1e-12))
 

@@ -4,7 +4,7 @@ are the passes. No FreeCAD in here."""
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -98,10 +98,19 @@ def planes_across(direction: Floats, points: Floats, normals: Floats, areas: Flo
     return across / np.linalg.norm(across)
 
 
-def curvature_along_and_across(surface: Json) -> tuple[Floats, Floats, Floats]:
-    """Normal curvatures of the triangles along and across the passes, 1/mm, positive where the
-    surface is convex, and the triangles' areas: from how the normals change along the edges.
-    """
+class Facets(NamedTuple):
+    """Triangles of a surface, those that passes have a way on."""
+
+    middles: Floats  # (n, 3) mm
+    normals: Floats  # (n, 3) unit, outward
+    along: Floats  # (n, 3) unit, of the passes
+    areas: Floats  # (n,) mm2
+    edges: tuple[Floats, Floats]  # (n, 3) mm, from the first corner
+    turns: tuple[Floats, Floats]  # (n, 3), of the surface's normal along them
+
+
+def facets(surface: Json) -> Facets:
+    """The triangles of one of ``surfaces``, and how the passes go on them."""
     corners = surface["triangles"]
     p, n, c = surface["points"][corners], surface["normals"][corners], surface["scalars"]
     c = (
@@ -115,11 +124,22 @@ def curvature_along_and_across(surface: Json) -> tuple[Floats, Floats, Floats]:
     along = (c[:, 2] - c[:, 0])[:, None] * u - (c[:, 1] - c[:, 0])[:, None] * v
     length = np.linalg.norm(along, axis=1)
     sound = np.isfinite(length) & (length > 0) & (size > 1e-12)
-    u, v, n, cross, size, along = (a[sound] for a in (u, v, n, cross, size, along))
-    along = along / length[sound, None]
-    across = np.cross(cross / size[:, None], along)
-    edges = np.stack([np.stack([(e * d).sum(1) for e in (u, v)], 1) for d in (along, across)], 1)
-    turns = [n[:, 1] - n[:, 0], n[:, 2] - n[:, 0]]
-    turned = np.stack([np.stack([(e * d).sum(1) for e in turns], 1) for d in (along, across)], 1)
+    p, u, v, n, cross, size, along = (a[sound] for a in (p, u, v, n, cross, size, along))
+    turns = n[:, 1] - n[:, 0], n[:, 2] - n[:, 0]
+    outward = np.sign((cross * n.sum(axis=1)).sum(axis=1))
+    unit = outward[:, None] * cross / size[:, None]
+    return Facets(p.mean(axis=1), unit, along / length[sound, None], 0.5 * size, (u, v), turns)
+
+
+def curvature_along_and_across(surface: Json) -> tuple[Floats, Floats, Floats]:
+    """Normal curvatures of the triangles along and across the passes, 1/mm, positive where the
+    surface is convex, and the triangles' areas: from how the normals change along the edges.
+    """
+    seen = facets(surface)
+    across = np.cross(seen.normals, seen.along)
+    edges, turned = (
+        np.stack([np.stack([(e * d).sum(1) for e in some], 1) for d in (seen.along, across)], 1)
+        for some in (seen.edges, seen.turns)
+    )
     shape = turned @ np.linalg.inv(edges)  # the shape operator in these two directions
-    return shape[:, 0, 0], shape[:, 1, 1], 0.5 * size
+    return shape[:, 0, 0], shape[:, 1, 1], seen.areas

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..base import processes
 from ..base.kinds import Array, Context, Facts, Floats, Json
 from ..base.messages import fact_data
 from ..engine import InputError, core
-from . import best, chaos, effects, processes, resampling, share, sobol
+from . import best, chaos, effects, resampling, share, sobol
 from .inputs import inputs_of
 from .table import ERROR, FAILED, OPEN, RUN, STATUS
 

@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
+from ..base import processes
 from ..base.kinds import Array, Context, Floats, Json
 from ..engine import InputError
-from . import processes, vary
+from . import vary
 
 if TYPE_CHECKING:
     from .kinds import OpenTurns, Quantile

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from ..base import schemas
 from ..base.files import absolute, at_key, in_file, json_bytes, remove_tree
 from ..base.kinds import Context, Facts, Json
+from ..base.processes import cores
 from ..base.regular_files import read_regular
 from ..engine import InputError, core
 from ..job import inputs, load as jobs
@@ -300,11 +301,6 @@ def survey(prepared: Prepared, folder: Path | str) -> Survey:
     seconds = [record["seconds"] for record in map(kept.read, jobs_) if record is not None]
     mean = sum(seconds) / len(seconds) if seconds else None
     return Survey(len(prepared.runs), len(jobs_), len(seconds), mean, cores())
-
-
-def cores() -> int:
-    """Processors that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _own(read: Read, prepared: Prepared, kept: Store) -> list[Path | str]:

@@ -12,9 +12,10 @@ from collections.abc import Sequence
 from multiprocessing.connection import wait
 from typing import TYPE_CHECKING, TypeAlias
 
-from . import one, worker
+from ..base import worker
+from ..base.processes import LOOK_S, Process, not_started
+from . import one
 from .delivery import Delivery
-from .processes import LOOK_S, Process, not_started
 
 if TYPE_CHECKING:
     from ..engine import core

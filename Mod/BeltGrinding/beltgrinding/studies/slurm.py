@@ -14,9 +14,9 @@ import subprocess
 from collections.abc import Sequence
 from pathlib import Path
 
+from ..base import processes
 from ..base.files import cannot_be_written, write_whole
 from ..engine import InputError, core
-from . import processes
 
 FOLDER = "slurm"
 MOST = 100_000  # jobs of an array

@@ -18,13 +18,13 @@ import numpy as np
 
 from ..base.files import cannot_be_written, write_whole
 from ..base.kinds import Context, Json, known
+from ..base.processes import cores
 from ..engine import InputError, core
 from ..job import inputs
 from ..planning import apply, rounds as plans
 from . import casting, one, places, slurm, store, table
 from .casting import PLANNED, UNKNOWN
 from .hashes import Hashes
-from .making import cores
 
 if TYPE_CHECKING:
     from .kinds import Blobs, Record, Run, Task

@@ -56,7 +56,7 @@ def grind_faces() -> None:
 
     def show_plan(obj: DocumentObject) -> None:
         Gui.Selection.clearSelection()  # its colour would hide those of the plan
-        show(obj, True)
+        show(obj)
 
     make(job.Document, translate("BeltGrinding", "Plan"), passes, show_plan, panel=False)
 

@@ -349,10 +349,7 @@ class PlanPanel(RunPanel):
         return super().reject()
 
 
-def show(obj: DocumentObject, run: bool = False) -> None:
-    """Opens the panel of a Plan object; ``run``: and plans."""
+def show(obj: DocumentObject) -> None:
+    """Opens the panel of a Plan object."""
     if obj.getParentGroup() is not None and not Gui.Control.activeDialog():
-        panel = PlanPanel(obj)
-        Gui.Control.showDialog(panel)
-        if run:
-            panel.start()
+        Gui.Control.showDialog(PlanPanel(obj))

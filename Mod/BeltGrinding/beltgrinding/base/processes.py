@@ -1,7 +1,7 @@
-"""Processes of our own for a study's work, over pipes: no port, no name in a file system by which another could reach them.
+"""Processes of our own, over pipes: no port, no name in a file system by which another could reach them.
 
-``Process`` is one; ``pool`` runs many tasks on several; ``apart`` runs one function in one and waits for it. They are a Python of
-their own, so that they need nothing of the program that wants them: not its executable (FreeCAD's is no Python), nor that its
+``Process`` is one; ``apart`` runs one function in one and waits for it; ``crew.Crew`` runs calls on several, ``studies.pool``
+many tasks. They are a Python of their own, so that they need nothing of the program that wants them: not its executable (FreeCAD's is no Python), nor that its
 script could be imported again, nor its terminal, whose Ctrl-C would reach them.
 """
 
@@ -19,9 +19,9 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, TypeVar
 
-from ..base.kinds import Context
 from ..engine import InputError, core
 from . import worker
+from .kinds import Context
 
 LOOK_S = 0.1  # between two looks for a cancellation
 TRIES = 4  # of what is done apart, where its process dies
@@ -117,7 +117,8 @@ def apart(function: Callable[..., T], *arguments: Any, context: Context = None) 
             process.end()
     if kind == worker.FAILED:
         raise value
-    return value
+    found: T = value
+    return found
 
 
 def _heard(process: Process, context: core.RunContext) -> tuple[str, Any]:
@@ -164,3 +165,18 @@ def _environment() -> dict[str, str]:
         **{name: "1" for name in ONE_THREAD},
         "PYTHONPATH": os.pathsep.join(places),
     }
+
+
+def cores() -> int:
+    """Processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def with_room(bytes_each: float) -> int:
+    """How many processes, one a core at most, find so many bytes of memory each now; 1 at least."""
+    try:
+        lines = Path("/proc/meminfo").read_text().splitlines()
+        free = next(int(line.split()[1]) for line in lines if line.startswith("MemAvailable:"))
+    except (OSError, StopIteration, ValueError):
+        return cores()
+    return max(1, min(cores(), int(1024 * free // max(bytes_each, 1.0))))

@@ -1,0 +1,283 @@
+"""Passes that are tried, and what of the reasons for what stays out of tolerance is tried next.
+
+Passes that are tried are simulated with few rounds, coarsely where samples are many. It is a search by hand's rules, no
+proof that nothing is better.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+
+from ..base.kinds import Floats, Json, known
+from ..engine import InputError, core
+from ..inspection import verdict as verdicts
+from ..job import poses
+from ..programs.program import Program
+from ..raster import raster_path
+from ..simulation import convergence
+from . import reasons, rounds
+
+TRIES = 6  # passes, at most
+GAIN = 0.003  # of the area, for other passes to be better
+MATTERS = 0.01  # of the area: a reason for less is let be
+CLOSER = 0.7  # step-over against the one before
+CLOSEST = 0.2  # of the contact's width
+MOST_POSES = 20_000
+SMOOTHER = 2.0  # times the length over which the wheel turns, where the robot is slow to turn it and cuts too deep
+MOST_SMOOTHING = 4.0  # of the contact's length
+MOST_REPEATS = 20
+MOST_OF = 0.9  # of the area that is not done at the least feed: the repeats are for it
+
+# mm (poses,) of the zones of a program as its file will have them; -1: the job's default.
+Zones: TypeAlias = Callable[[Program], Floats]
+
+
+class Fidelity(NamedTuple):
+    """How finely passes are simulated that are tried."""
+
+    rounds: int
+    samples: int  # at most, about
+    halved: bool  # spacing, step and cells are doubled together where samples are more; else the spacing alone grows
+
+
+QUICK = Fidelity(3, 60_000, True)
+COARSE = Fidelity(1, 6_000, False)
+
+
+class Tried(NamedTuple):
+    """Passes that were tried, without what is large: it can be sent to another process."""
+
+    change: str  # what of the passes before was changed, or "first"
+    machine: Json  # the job's belt machine
+    wanted: Json  # settings of the raster, its way found
+    in_tolerance: float  # of the area, surely where that is asked for
+    start: tuple[Floats, Floats]  # feeds and factors on forces, a value a command
+    shares: Json  # of the area out of tolerance, by reason
+    below: float  # of the area, cut too deep
+    width_mm: float | None  # of the contact
+    length_mm: float
+    step_over_mm: float
+    poses: int
+    process_time_s: float
+    undone: float  # of the area, not done even at the least feed and the greatest force
+    repeats: int  # that it wants
+    looks: Floats  # (3,) unit: the faces' mean normal, 0 of closed ones
+
+    def row(self, better: bool) -> dict[str, Any]:
+        """What is told of it."""
+        wheel = self.machine["wheel"]
+        return {
+            "change": self.change,
+            "wheel": {k: wheel[k] for k in ("radius_mm", "width_mm", "crown_radius_mm")},
+            "force_N": self.wanted["force_N"] or self.machine["force_N"],
+            "along": self.wanted["along"],
+            "direction": list(self.wanted["direction"]),
+            "belt_angle_deg": self.wanted["belt_angle_deg"],
+            "max_tilt_deg": self.wanted["max_tilt_deg"],
+            "step_over_mm": self.step_over_mm,
+            "repeats": self.wanted["repeats"],
+            "run_out_mm": self.wanted["run_out_mm"],
+            "smoothing_mm": self.wanted["smoothing_mm"],
+            "poses": self.poses,
+            "process_time_s": self.process_time_s,
+            "in_tolerance": self.in_tolerance,
+            "better": better,
+        }
+
+
+Move: TypeAlias = "tuple[str, Json, Json]"  # what changes, belt machine, settings of the raster
+Moves: TypeAlias = Callable[[Tried], Iterable["tuple[float, Move]"]]  # with what each may bring
+
+
+def with_path(data: Json, laid: Json) -> dict[str, Any]:
+    """The job with the passes as its only program."""
+    return {
+        **data,
+        "programs": [{"name": "raster", "poses": poses.list_poses(laid), "unresolved": 0}],
+    }
+
+
+def lay(
+    data: Json,
+    wanted: Json,
+    settings: Json,
+    context: core.RunContext,
+    zones: Zones | None = None,
+) -> dict[str, Any]:
+    """As ``raster_path.raster``; with the zones that the program's file will have, and one force where the plan's settings let
+    none change."""
+    laid = raster_path.raster(data, wanted, context)
+    if not settings["force_min_N"] and not settings["force_max_N"]:
+        laid["forces"] = np.full(
+            len(laid["forces"]), -1.0
+        )  # the job's, from touching down to lifting off
+    if zones is not None:
+        laid["zones"] = zones(raster_path.program(laid))
+    return laid
+
+
+def attempt(
+    data: Json,
+    move: Move,
+    settings: Json,
+    fidelity: Fidelity = QUICK,
+    zones: Zones | None = None,
+    context: core.RunContext | None = None,
+) -> Tried:
+    """Lays passes on a job (validated, in its time) and plans them roughly. Raises InputError, Cancelled."""
+    context = context or core.RunContext()
+    change, machine, wanted = move
+    data = {**data, "belt_machine": machine}
+    laid = lay(data, wanted, settings, context.part(0.0, 0.2), zones)
+    # The way is found once: other passes go the same.
+    wanted = {**wanted, "along": laid["along"], "direction": list(laid["direction"])}
+    job = _coarser(rounds.settled(with_path(data, laid), context), laid["area_mm2"], fidelity)
+    quick = {"rounds": fidelity.rounds, "check": False, "levels": 0}
+    plan = rounds.plan(job, {**settings, **quick}, context.part(0.2, 1.0))
+    return _seen(move[0], machine, wanted, laid, plan)
+
+
+def _coarser(job: Json, area: float, fidelity: Fidelity) -> Json:
+    spacing = job["sampling"]["spacing_mm"]
+    if area <= fidelity.samples * spacing**2:
+        return job
+    if fidelity.halved:
+        return convergence.scaled(job, "coarse")
+    factor = math.sqrt(area / fidelity.samples) / spacing
+    wider = {
+        "spacing_mm": factor * spacing,
+        "edge_spacing_mm": factor * job["sampling"]["edge_spacing_mm"],
+        "precision_mm": factor**2 * job["sampling"]["precision_mm"],
+    }
+    return {**job, "sampling": {**job["sampling"], **wider}}
+
+
+def _seen(change: str, machine: Json, wanted: Json, laid: Json, plan: rounds.Plan) -> Tried:
+    looks = -np.asarray(laid["contacts"])[:, :3, 2].mean(axis=0)
+    size = float(np.linalg.norm(looks))
+    best = max(plan.rounds, key=share)
+    shares = plan.why["shares"]
+    undone, repeats = _repeats(plan, wanted["repeats"])
+    return Tried(
+        change=change,
+        machine=machine,
+        wanted=wanted,
+        in_tolerance=share(best),
+        start=(plan.new, plan.factors),
+        shares=shares,
+        below=plan.rounds[-1]["below"],
+        width_mm=laid["contact_width_mm"],
+        length_mm=laid["contact_length_mm"],
+        step_over_mm=laid["step_over_mm"],
+        poses=len(laid["frames"]),
+        process_time_s=best["process_time_s"],
+        undone=undone,
+        repeats=repeats,
+        looks=looks / size if size > 0.1 else np.zeros(3),
+    )
+
+
+def share(one: Json) -> float:
+    """Of the area, in tolerance by a round's figures; surely, where that was asked for."""
+    return float(one.get("expected_share", one["in_tolerance"]))
+
+
+def climb(
+    data: Json,
+    first: Move,
+    settings: Json,
+    fidelity: Fidelity = QUICK,
+    zones: Zones | None = None,
+    tries: int = TRIES,
+    moves: tuple[Moves, ...] = (),
+    told: Callable[[dict[str, Any]], object] | None = None,
+    context: core.RunContext | None = None,
+    before: Tried | None = None,
+) -> tuple[Tried, list[dict[str, Any]]]:
+    """(the best passes of at most ``tries``, what is told of each): begins with ``first``, or with ``before``, which was tried,
+    and goes on from the best with what may mend it, the likeliest first. ``moves``: what may be tried besides ``others``. Raises InputError
+    where ``first`` cannot be laid, Cancelled."""
+    context = context or core.RunContext()
+    best, rows = before, list[dict[str, Any]]()
+    seen = set[str]()
+    queue: list[Move] = [first] if before is None else _following(before, moves)
+    while queue and len(rows) < tries:
+        move = queue.pop(0)
+        key = repr((sorted(move[1].items(), key=str), sorted(move[2].items(), key=str)))
+        if key in seen:
+            continue
+        seen.add(key)
+        part = context.part(len(rows) / tries, (len(rows) + 1) / tries)
+        try:
+            one = attempt(data, move, settings, fidelity, zones, part)
+        except InputError:
+            if best is None:
+                raise
+            continue  # no such passes on these faces
+        better = best is None or one.in_tolerance > best.in_tolerance + GAIN
+        rows.append(one.row(better))
+        if told is not None:
+            told(rows[-1])
+        if better:
+            best = one
+            queue = _following(one, moves)
+    return known(best), rows
+
+
+def _following(one: Tried, moves: tuple[Moves, ...]) -> list[Move]:
+    found = [pair for source in (others, *moves) for pair in source(one)]
+    return [move for _, move in sorted(found, key=lambda pair: -pair[0])]
+
+
+def others(one: Tried) -> list[tuple[float, Move]]:
+    """[(of the area, that it may mend, Move)]: passes that may mend what is out of tolerance."""
+    wanted, shares = one.wanted, one.shares
+    found: list[tuple[float, Move]] = []
+
+    def add(share: float, name: str, **changed: Any) -> None:
+        found.append((share, (name, one.machine, {**wanted, **changed})))
+
+    if one.undone > MATTERS:
+        repeats = min(one.repeats, MOST_REPEATS)
+        most = MOST_POSES * max(wanted["repeats"], 1)
+        if repeats > wanted["repeats"] and one.poses * repeats <= most:
+            add(one.undone, "repeats", repeats=repeats)
+    between = shares["shared"] + shares["fringe"] + shares["border"]
+    closer = CLOSER * one.step_over_mm
+    if between > MATTERS and one.poses / CLOSER <= MOST_POSES:
+        if one.width_mm is None or closer >= CLOSEST * one.width_mm:
+            add(shares["shared"] + shares["fringe"], "step_over", step_over_mm=closer)
+    if shares["border"] > MATTERS:
+        for run_out in (0.25 * one.length_mm, -0.25 * one.length_mm):
+            farther = round(wanted["run_out_mm"] + run_out, 3)
+            add(0.9 * shares["border"], "run_out", run_out_mm=farther)
+    if one.below > MATTERS and wanted["smoothing_mm"] < MOST_SMOOTHING * one.length_mm:
+        smoother = max(SMOOTHER * wanted["smoothing_mm"], one.length_mm)
+        add(one.below, "smoothing", smoothing_mm=round(smoother, 3))
+    return found
+
+
+def _repeats(plan: rounds.Plan, now: int) -> tuple[float, int]:
+    """(of the area, what is not done even at the least feed and the greatest force; how often the passes must be run through
+    so that most of it is)."""
+    field, influence = plan.after.field, known(plan.after.influence)
+    slowest, _ = plan.commands.feed_range
+    _, strongest = plan.commands.force_range
+    more = (plan.new / slowest) * (strongest / plan.factors)  # of each command, than it removes now
+    motions = np.repeat(np.arange(len(influence)), np.diff(influence.first).astype(int))
+    depth = influence.depth * more[plan.commands.group][motions]
+    most = np.bincount(influence.sample.astype(int), depth, len(field.height))
+    lower, upper = verdicts.limits(plan.after.job, field)
+    needed = np.asarray(field.stock_height, dtype=float) - upper
+    areas = np.asarray(field.areas, dtype=float)
+    left = (most > 0.0) & (most < needed) & (np.asarray(field.flags) & core.MISSED == 0)
+    if not left.any():
+        return 0.0, now
+    wanted = (needed + 0.5 * (upper - lower))[left]
+    ratios = np.sort(wanted / np.maximum(most[left], 1e-6))
+    repeats = math.ceil(now * float(ratios[int(MOST_OF * (len(ratios) - 1))]))
+    return float(areas[left].sum() / areas.sum()), max(now + 1, repeats)

@@ -1,0 +1,398 @@
+"""The search for wheel, direction of the passes and belt angle: first by what the geometry says, then by coarse plans of the
+most promising, then by rules from the best of those, then by full plans of the best three.
+
+Candidates run side by side, on processes of one thread each. What is found depends on how many were tried, never on how many
+processes did it, nor on which was ready first.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..base.crew import Answer, Call, Crew
+from ..base.kinds import Context, Json, known
+from ..engine import InputError, core
+from ..job.typed import typed
+from ..job.workpiece import read_design
+from ..raster import reach_map
+from . import by_rules, rounds
+from .by_rules import COARSE, QUICK, Move, Tried, Zones
+from .moves import Moves
+
+BUDGET_S = 120.0
+UNTIL_IT_PAYS = float("inf")  # s: as long as a generation of coarse plans brings GAIN
+OWN_ANGLES, OTHER_ANGLES = (0.0, 90.0, 45.0, 135.0), (0.0, 90.0)  # degrees, of the belt
+FIRST = 16  # coarse plans of a generation
+OF_A_WHEEL = 2  # of them, of each wheel besides the job's own
+LEADERS = 4  # that rules go on from
+FINALS = 3  # full plans
+FAR_BEHIND = 0.1  # of the area: ways on which the wheel gets to so much less are no candidates; passes so far behind get no full plan
+GAIN = 0.005  # of the area
+ENOUGH = 0.995  # of the area: nothing else is tried
+COARSE_UNTIL, RULES_UNTIL = 0.4, 0.65  # of the budget
+FURTHER = 4  # wheels of which is planned what they would bring
+PROCESS_BYTES, SAMPLE_BYTES = 4e8, 3_000.0  # of a process, and for each sample
+
+Told = Callable[[dict[str, Any]], object]
+
+
+class Search(NamedTuple):
+    """What may be tried."""
+
+    budget_s: float = BUDGET_S
+    wheels: tuple[
+        Json, ...
+    ] = ()  # belt machines of the job, which may be taken in place of its own
+    further: tuple[Json, ...] = ()  # those of which is told what they would bring
+    fixed: tuple[str, ...] = ()  # settings of the raster that stay as they are
+    workers: int = 0  # processes at most; 0: one a core
+
+
+class Found(NamedTuple):
+    """What a search found."""
+
+    best: Tried  # with the start of its full plan
+    rounds: list[dict[str, Any]]  # of that plan
+    rows: list[dict[str, Any]]  # as ``Tried.row``, of all that was tried
+    geometry: list[dict[str, Any]]  # wheel, along, direction, belt_angle_deg, reachable, upright
+    wheels: list[
+        dict[str, Any]
+    ]  # what further wheels would bring: wheel, reachable, in_tolerance and gain (None: not planned)
+    reachable: float  # of the area, by the job's own wheel with its belt in any direction
+    reachable_by_any: float  # by any of the wheels
+    seconds: float
+    through: bool  # all was tried that was to be
+
+    def report(self) -> dict[str, Any]:
+        """As JSON has it."""
+        kept = ("geometry", "wheels", "reachable", "reachable_by_any", "seconds", "through")
+        return {"tried": self.rows, **{name: getattr(self, name) for name in kept}}
+
+
+class Seen(NamedTuple):
+    """A wheel, and what the geometry says of it."""
+
+    machine: Json  # the job's belt machine with it
+    map: reach_map.Map
+
+
+def alone(function: Callable[..., Any], *arguments: Any) -> Any:
+    """The function's answer, by one thread; called in a process of its own."""
+    core.set_threads(1)
+    return function(*arguments)
+
+
+def full(
+    data: Json, tried: Tried, settings: Json, zones: Zones | None
+) -> tuple[Tried, list[dict[str, Any]]]:
+    """(passes that were tried with the feeds and forces of their full plan, its rounds)."""
+    data = {**data, "belt_machine": tried.machine}
+    laid = by_rules.lay(data, tried.wanted, settings, core.RunContext(), zones)
+    settings = {**settings, "goal": "tolerance", "levels": 0, "check": False}
+    plan = rounds.plan(by_rules.with_path(data, laid), settings, start=tried.start)
+    share = max(by_rules.share(one) for one in plan.rounds)
+    planned = tried._replace(change="full", in_tolerance=share, start=(plan.new, plan.factors))
+    return planned._replace(shares=plan.why["shares"]), plan.rounds
+
+
+def find(
+    data: Json,
+    first: Json,
+    settings: Json,
+    search: Search,
+    zones: Zones | None = None,
+    told: Told | None = None,
+    stop: Callable[[], bool] | None = None,
+    context: Context = None,
+) -> Found:
+    """Searches for a job, validated and in its time. ``first``: validated settings of the raster; the rules begin with them in any
+    case, so that nothing worse is found than they find; ``settings``: of the plan, validated; ``told(row)``: as ``Tried.row``;
+    ``zones``: must be picklable; ``stop()``: whether the best so far is enough. Raises InputError, Cancelled.
+    """
+    run = _Run(data, first, settings, search, zones, told, stop, context or core.RunContext())
+    with Crew(search.workers, _bytes(data, first)) as run.crew:
+        return run.found()
+
+
+def _bytes(data: Json, first: Json) -> float:
+    """What a process needs, about."""
+    job = typed(data)
+    if not job.sampling.spacing_mm:
+        return PROCESS_BYTES
+    shape = read_design(job.design)
+    area = sum(shape.face_area(face) for face in reach_map.faces_of(job, shape, first))
+    return PROCESS_BYTES + SAMPLE_BYTES * area / job.sampling.spacing_mm**2
+
+
+class _Run:
+    crew: Crew
+
+    def __init__(
+        self,
+        data: Json,
+        first: Json,
+        settings: Json,
+        search: Search,
+        zones: Zones | None,
+        told: Told | None,
+        stop: Callable[[], bool] | None,
+        context: core.RunContext,
+    ) -> None:
+        self.data, self.first, self.settings = data, first, settings
+        self.search, self.zones, self.told, self.stop = search, zones, told, stop
+        self.context, self.begun = context, time.monotonic()
+        self.rows: list[dict[str, Any]] = []  # in the order of the calls
+        self.shown = 0.0  # the best share that was told
+        self.through = True
+
+    def found(self) -> Found:
+        own, others, further = self._looked()
+        start: Move = ("first", self.data["belt_machine"], self.first)
+        default, coarse = self._coarse(start, candidates(own, others, start))
+        mine = [one for one in coarse if one.machine["wheel"] == own.machine["wheel"]]
+        wheels = self._brought(further, own, mine)
+        best, its_rounds = self._finals(default, self._ruled(default, coarse))
+        fits = [one.map.fits for one in (own, *others, *further)]
+        return Found(
+            best=best,
+            rounds=its_rounds,
+            rows=self.rows,
+            geometry=[_geometry(one, reach) for one in (own, *others) for reach in one.map.found],
+            wheels=wheels,
+            reachable=max(float(own.map.fits.mean()), _most(own)),
+            reachable_by_any=max(
+                float(np.logical_or.reduce(fits).mean()), *map(_most, (own, *others, *further))
+            ),
+            seconds=time.monotonic() - self.begun,
+            through=self.through,
+        )
+
+    def _call(self, function: Callable[..., Any], *arguments: Any) -> Call:
+        return Call(alone, (function, self.data, *arguments))
+
+    def _over(self, share: float) -> bool:
+        """Whether that share of the budget is spent, or who asked wants no more."""
+        spent = time.monotonic() - self.begun > share * self.search.budget_s
+        return spent or (self.stop is not None and self.stop())
+
+    def _run(
+        self, calls: Sequence[Call], until: float, part: tuple[float, float], needed: int = 0
+    ) -> list[Any]:
+        """Values of the calls, None of those that failed or were not done until that share of the budget; the first ``needed`` are done in
+        any case."""
+        left, enough = set(range(needed)), False
+
+        def taken(number: int, answer: Answer) -> None:
+            nonlocal enough
+            left.discard(number)
+            rows = _rows(answer.value)
+            enough |= number < needed and any(row["in_tolerance"] >= ENOUGH for row in rows)
+            for row in rows:
+                self._show(row)
+
+        answers = self.crew.run(
+            calls,
+            taken,
+            lambda: not left and (enough or self._over(until)),
+            self.context.part(*part),
+        )
+        self.through &= enough or all(answer is not None for answer in answers)
+        for answer in answers:
+            for row in [] if answer is None else _rows(answer.value):
+                self.rows.append(
+                    {**row, "better": row["in_tolerance"] > self._best() + by_rules.GAIN}
+                )
+        failed = [one.error for one in answers if one is not None and one.error is not None]
+        for error in failed:
+            if not isinstance(error, InputError):
+                raise error
+        if needed and answers[0] is not None and answers[0].error is not None:
+            if all(answer is None or answer.error is not None for answer in answers):
+                raise answers[0].error
+        return [None if answer is None else answer.value for answer in answers]
+
+    def _best(self) -> float:
+        return max((row["in_tolerance"] for row in self.rows), default=0.0)
+
+    def _show(self, row: dict[str, Any]) -> None:
+        better = row["in_tolerance"] > self.shown + by_rules.GAIN
+        self.shown = max(self.shown, row["in_tolerance"])
+        if self.told is not None:
+            self.told({**row, "better": better})
+
+    def _looked(self) -> tuple[Seen, list[Seen], list[Seen]]:
+        """The job's own wheel, others that may be taken, and further ones."""
+        wanted, fixed = self.first, self.search.fixed
+        given = {"along": wanted["along"], "direction": list(wanted["direction"])}
+        ways = [] if wanted["along"] == "auto" else [given]
+        if not ways or not {"along", "direction"} & set(fixed):
+            ways += reach_map.ways(self.data, wanted, self.context.part(0.0, 0.0))
+            ways = reach_map.distinct(ways)
+        machines = [self.data["belt_machine"], *self.search.wheels, *self.search.further]
+        calls = []
+        for number, machine in enumerate(machines):
+            angles: tuple[float, ...] = OTHER_ANGLES if number else OWN_ANGLES
+            if "belt_angle_deg" in fixed:
+                angles = (wanted["belt_angle_deg"],)
+            job = {**self.data, "belt_machine": machine}
+            calls.append(Call(alone, (reach_map.look, job, wanted, ways, angles)))
+        answers = self._run(calls, 1.0, (0.0, 0.1), needed=len(calls))
+        seen = [answer and Seen(machine, answer) for machine, answer in zip(machines, answers)]
+        count = 1 + len(self.search.wheels)
+        others, further = ([one for one in some if one] for some in (seen[1:count], seen[count:]))
+        return known(seen[0]), others, further
+
+    def _coarse(self, start: Move, queue: Sequence[Move]) -> tuple[Tried | None, list[Tried]]:
+        """(what the rules find from the start, coarse plans of candidates, the best first)."""
+        calls = [self._call(by_rules.climb, start, self.settings, QUICK, self.zones)]
+        default: Tried | None = None
+        found: list[Tried] = []
+        needed = 1
+        while True:
+            some, queue = queue[:FIRST], queue[FIRST:]
+            for move in some:
+                calls.append(self._call(by_rules.attempt, move, self.settings, COARSE, self.zones))
+            best = self._best()
+            values = self._run(calls, COARSE_UNTIL, (0.1, 0.4), needed)
+            if needed:
+                default = values[0] and values[0][0]
+                values = values[1:]
+                if default is not None and default.in_tolerance >= ENOUGH:
+                    return default, []
+            found += [value for value in values if value is not None]
+            pays = bool(needed) or self._best() > best + GAIN
+            if not queue or not pays or self._over(COARSE_UNTIL):
+                return default, sorted(found, key=lambda one: -one.in_tolerance)
+            needed, calls = 0, []
+
+    def _brought(self, further: list[Seen], own: Seen, mine: list[Tried]) -> list[dict[str, Any]]:
+        """What further wheels would bring: those that get to more are planned coarsely, as the own one was."""
+        if not further:
+            return []
+        most = _most(own)
+        ahead = sorted(
+            (one for one in further if _most(one) > most + GAIN), key=lambda one: -_most(one)
+        )
+        ahead = ahead[:FURTHER]
+        moves = [ranked(one, self.first)[0][1] for one in ahead]
+        calls = [self._call(by_rules.attempt, m, self.settings, COARSE, self.zones) for m in moves]
+        values = (
+            self._run(calls, RULES_UNTIL, (0.4, 0.5)) if calls and mine else [None] * len(ahead)
+        )
+        planned = {id(one): value for one, value in zip(ahead, values)}
+        told = []
+        for one in further:
+            value = planned.get(id(one))
+            share = None if value is None else value.in_tolerance
+            told.append(
+                {
+                    "wheel": _size(one.machine),
+                    "reachable": _most(one),
+                    "in_tolerance": share,
+                    "gain": None if share is None else share - mine[0].in_tolerance,
+                }
+            )
+        return told
+
+    def _ruled(self, default: Tried | None, coarse: list[Tried]) -> list[Tried]:
+        """What the rules find from the best, best first, and what they began with."""
+        leaders = [*([default] if default else []), *coarse]
+        leaders = sorted(leaders, key=lambda one: -one.in_tolerance)[:LEADERS]
+        moves = (Moves(self.search.fixed),)
+        calls = []
+        for one in leaders:
+            begun: Move = (one.change, one.machine, one.wanted)
+            options = (
+                begun,
+                self.settings,
+                COARSE,
+                self.zones,
+                by_rules.TRIES,
+                moves,
+                None,
+                None,
+                one,
+            )
+            calls.append(self._call(by_rules.climb, *options))
+        values = self._run(calls, RULES_UNTIL, (0.5, 0.7))
+        climbed = [value[0] for value in values if value is not None]
+        return sorted([*climbed, *coarse], key=lambda one: -one.in_tolerance)
+
+    def _finals(
+        self, default: Tried | None, tried: list[Tried]
+    ) -> tuple[Tried, list[dict[str, Any]]]:
+        """The best of full plans of the best, what the rules found from the start among them unless it is far behind."""
+        chosen: list[Tried] = []
+        for one in tried:
+            if all(_same(one, other) is False for other in chosen) and len(chosen) < FINALS:
+                chosen.append(one)
+        if default is not None and not any(_same(default, one) for one in chosen):
+            if not chosen or default.in_tolerance > chosen[0].in_tolerance - FAR_BEHIND:
+                chosen = sorted([*chosen[: FINALS - 1], default], key=lambda one: -one.in_tolerance)
+        calls = [self._call(full, one, self.settings, self.zones) for one in chosen]
+        own = [k for k, one in enumerate(chosen) if default is not None and _same(one, default)]
+        needed = 1 + max(own, default=0)
+        values = [one for one in self._run(calls, 1.0, (0.7, 1.0), needed) if one is not None]
+        best: tuple[Tried, list[dict[str, Any]]] = max(values, key=lambda one: one[0].in_tolerance)
+        return best
+
+
+def _rows(value: Any) -> list[dict[str, Any]]:
+    """What is told of a call's value."""
+    if isinstance(value, Tried):
+        return [value.row(False)]
+    if isinstance(value, tuple) and value and isinstance(value[0], Tried):
+        return [value[0].row(False)] if value[0].change == "full" else list(value[1])
+    return []
+
+
+def _same(one: Tried, other: Tried) -> bool:
+    return one.machine == other.machine and one.wanted == other.wanted
+
+
+def _most(one: Seen) -> float:
+    return max((reach.share for reach in one.map.found), default=0.0)
+
+
+def _size(machine: Json) -> dict[str, float]:
+    return {name: machine["wheel"][name] for name in ("radius_mm", "width_mm", "crown_radius_mm")}
+
+
+def _geometry(one: Seen, reach: reach_map.Reach) -> dict[str, Any]:
+    return {
+        "wheel": _size(one.machine),
+        "along": reach.way["along"],
+        "direction": list(reach.way.get("direction", [])),
+        "belt_angle_deg": reach.belt_angle_deg,
+        "reachable": reach.share,
+        "upright": reach.upright,
+    }
+
+
+def candidates(own: Seen, others: Sequence[Seen], start: Move) -> list[Move]:
+    """In the order of their promise: the job's own wheel on the ways and with the belt angles on which it gets to most, and between
+    them the best of each other wheel."""
+    mine = ranked(own, start[2])
+    theirs = [pair for other in others for pair in ranked(other, start[2])[:OF_A_WHEEL]]
+    theirs.sort(key=lambda pair: -round(pair[0], 2))
+    most = max([share for share, _ in [*mine, *theirs]], default=0.0)
+    mine = [pair for pair in mine if pair[0] >= mine[0][0] - FAR_BEHIND]
+    theirs = [pair for pair in theirs if pair[0] >= most - FAR_BEHIND]
+    found = []
+    for k in range(max(len(mine), len(theirs))):
+        found += [move for _, move in [*mine[k : k + 1], *theirs[k : k + 1]]]
+    return [move for move in found if move[1:] != start[1:]]
+
+
+def ranked(one: Seen, wanted: Json) -> list[tuple[float, Move]]:
+    """[(of the area, that the wheel gets to, Move)], the most first, where it need not lean counts double; of equals as they come."""
+    found = sorted(one.map.found, key=lambda reach: -round(reach.share + reach.upright, 2))
+    moves: list[tuple[float, Move]] = []
+    for reach in found:
+        changed = {**wanted, **reach.way, "belt_angle_deg": reach.belt_angle_deg}
+        moves.append((reach.share, ("way", one.machine, changed)))
+    return moves

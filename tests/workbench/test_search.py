@@ -186,7 +186,7 @@ def tried(machine=None, shares=None, **wanted):
     feeds = np.ones(3), np.ones(3)
     return by_rules.Tried(
         *("first", machine, settings, 0.5, feeds, {**none, **(shares or {})}, 0.2),
-        *(6.0, 8.0, 3.0, 40, 10.0, 1, up),
+        *(6.0, 8.0, 3.0, 40, 10.0, 0.0, 1, up),
     )
 
 

@@ -101,6 +101,20 @@ def with_path(data: Json, laid: Json) -> dict[str, Any]:
     }
 
 
+def one_force(settings: Json) -> bool:
+    """Whether the force is set once, by hand: the settings of a plan let none change."""
+    return not settings["force_min_N"] and not settings["force_max_N"]
+
+
+def with_machine(data: Json, machine: Json, wanted: Json, settings: Json) -> dict[str, Any]:
+    """The job with another belt machine; a force of the passes that no program sets is the machine's."""
+    force = wanted["force_N"] or machine["force_N"]
+    return {
+        **data,
+        "belt_machine": {**machine, "force_N": force} if one_force(settings) else machine,
+    }
+
+
 def lay(
     data: Json,
     wanted: Json,
@@ -111,7 +125,7 @@ def lay(
     """As ``raster_path.raster``; with the zones that the program's file will have, and one force where the plan's settings let
     none change."""
     laid = raster_path.raster(data, wanted, context)
-    if not settings["force_min_N"] and not settings["force_max_N"]:
+    if one_force(settings):
         laid["forces"] = np.full(
             len(laid["forces"]), -1.0
         )  # the job's, from touching down to lifting off
@@ -131,7 +145,7 @@ def attempt(
     """Lays passes on a job (validated, in its time) and plans them roughly. Raises InputError, Cancelled."""
     context = context or core.RunContext()
     change, machine, wanted = move
-    data = {**data, "belt_machine": machine}
+    data = with_machine(data, machine, wanted, settings)
     laid = lay(data, wanted, settings, context.part(0.0, 0.2), zones)
     # The way is found once: other passes go the same.
     wanted = {**wanted, "along": laid["along"], "direction": list(laid["direction"])}

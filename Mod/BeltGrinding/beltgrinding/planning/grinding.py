@@ -83,7 +83,7 @@ def _planned(
     tried: list[dict[str, Any]],
 ) -> Ground:
     """The plan of passes that were tried, from their feeds on."""
-    data = {**data, "belt_machine": best.machine}
+    data = by_rules.with_machine(data, best.machine, best.wanted, settings)
     laid = by_rules.lay(data, best.wanted, settings, context.part(0.0, 0.1), zones)
     path = by_rules.with_path(data, laid)
     plan = rounds.plan(path, settings, context.part(0.1, 1.0), told, start=best.start)

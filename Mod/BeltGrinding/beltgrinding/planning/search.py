@@ -90,7 +90,7 @@ def full(
     data: Json, tried: Tried, settings: Json, zones: Zones | None
 ) -> tuple[Tried, list[dict[str, Any]]]:
     """(passes that were tried with the feeds and forces of their full plan, its rounds)."""
-    data = {**data, "belt_machine": tried.machine}
+    data = by_rules.with_machine(data, tried.machine, tried.wanted, settings)
     laid = by_rules.lay(data, tried.wanted, settings, core.RunContext(), zones)
     settings = {**settings, "goal": "tolerance", "levels": 0, "check": False}
     plan = rounds.plan(by_rules.with_path(data, laid), settings, start=tried.start)

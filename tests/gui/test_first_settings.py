@@ -129,6 +129,33 @@ def test_values_come_from_the_part_and_follow_its_faces():
     assert doc.RasterPath.PoseCount > 2
 
 
+def test_first_values_say_what_they_bring_and_offer_a_plan():
+    start()
+    doc = FreeCAD.newDocument("work")
+    doc.UndoMode = 1
+    part = doc.addObject("Part::Feature", "Knob")
+    part.Shape = Part.makeSphere(18, FreeCAD.Vector(), FreeCAD.Vector(0, 0, 1), 20, 90)
+    doc.recompute()
+    dome = next(i for i, f in enumerate(part.Shape.Faces, 1) if hasattr(f.Surface, "Radius"))
+    Gui.Selection.clearSelection()
+    Gui.Selection.addSelection(doc.Name, "Knob", f"Face{dome}")
+    menu("New job")
+    share = doc.BeltGrindingJob.Proxy.proposed["in_tolerance"]
+    assert 0.0 < share < 0.8, share
+    text = f"By a coarse run they bring {100 * share:.0f} % of the area into tolerance."
+    assert text in field("note").text() and "Planned feeds bring more" in field("note").text()
+    offer = field("planThen")
+    assert offer.isVisible() and not offer.isChecked()
+    type_in("WheelWidth", "5 mm")  # not what was run
+    assert "By a coarse run" not in field("note").text()
+    offer.setChecked(True)
+    press("OK")
+    wait(lambda: doc.getObject("Plan") is not None, 20)
+    settle()
+    assert visible(QtGui.QPushButton, "plan") and not doc.Plan.Fingerprint  # a person begins it
+    press("Close")
+
+
 def test_another_kind_of_machine_gets_values_of_its_own():
     start()
     doc = FreeCAD.newDocument("work")

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from ..base.kinds import Json
-from ..engine import InputError
+from ..engine import Cancelled, InputError
+from ..planning import by_rules
 from ..raster import proposal
 from . import job_data, job_inputs, waiting
 from .belt_machine import BeltMachine
@@ -47,6 +48,17 @@ def propose(job: DocumentObject, text: str = "") -> dict[str, Any]:
     with job_inputs.scratch_folder() as folder:
         data = job_inputs.without_programs(job, folder)
         return waiting.wait(lambda context: proposal.propose(data, context), text)
+
+
+def expected(job: DocumentObject, text: str = "") -> float | None:
+    """Of the area, that the job as it is brings into tolerance, by a coarse run; None where it cannot be run, or nobody
+    waits for it."""
+    try:
+        with job_inputs.scratch_folder() as folder:
+            data = job_inputs.to_data(job, folder)
+            return waiting.wait(lambda context: by_rules.expected(data, context), text)
+    except (InputError, Cancelled):
+        return None
 
 
 # Property: what a proposal calls it, if it has it, by the kind of machine.

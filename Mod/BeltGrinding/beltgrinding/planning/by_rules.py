@@ -16,9 +16,11 @@ from ..base.kinds import Floats, Json, known
 from ..engine import InputError, core
 from ..inspection import verdict as verdicts
 from ..job import poses
+from ..job.typed import typed
+from ..job.workpiece import read_design
 from ..programs.program import Program
 from ..raster import raster_path
-from ..simulation import convergence
+from ..simulation import convergence, run as runs
 from . import reasons, rounds
 
 TRIES = 6  # passes, at most
@@ -153,6 +155,18 @@ def attempt(
     quick = {"rounds": fidelity.rounds, "check": False, "levels": 0}
     plan = rounds.plan(job, {**settings, **quick}, context.part(0.2, 1.0))
     return _seen(move[0], machine, wanted, laid, plan)
+
+
+def expected(job: Json, context: core.RunContext | None = None) -> float:
+    """Of the area, that a validated job brings into tolerance as it is, by a coarse run. Raises InputError, Cancelled."""
+    context = context or core.RunContext()
+    job = rounds.settled(job, context.part(0.0, 0.0))
+    design = typed(job).design
+    shape = read_design(design, context.part(0.0, 0.0))
+    faces = design.faces or range(1, shape.face_count + 1)
+    area = sum(shape.face_area(face - 1) for face in faces)
+    result = runs.run(_coarser(job, area, COARSE), context, resume=False)
+    return float(result.summary["in_tolerance_area_share"])
 
 
 def _coarser(job: Json, area: float, fidelity: Fidelity) -> Json:

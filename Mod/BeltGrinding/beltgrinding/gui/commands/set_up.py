@@ -6,7 +6,7 @@ import FreeCAD
 import FreeCADGui as Gui
 
 from ...engine import InputError
-from ...objects import api, belt_machine, preferences, stock
+from ...objects import api, belt_machine, first_settings, preferences, stock
 from ...objects.kinds import DocumentObject
 from ..common.compat import translate
 from ..common.transaction import transaction
@@ -36,7 +36,11 @@ def new_job() -> DocumentObject | None:
     with transaction(document, translate("BeltGrinding", "New grinding job"), panel=True) as step:
         job = api.make_job(links, (), **preferences.job_defaults())
         text = translate("BeltGrinding", "Looking at the part for first values")
-        job.Proxy.proposed = api.set_up(job, text)
+        found = api.set_up(job, text)
+        if "feed_mm_s" in found:
+            text = translate("BeltGrinding", "Grinding coarsely what the first values bring")
+            found["in_tolerance"] = first_settings.expected(job, text)
+        job.Proxy.proposed = found
     if step.failed:
         return None
     expand(job)

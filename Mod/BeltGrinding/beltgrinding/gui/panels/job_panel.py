@@ -14,7 +14,7 @@ from ...objects.kinds import Document, DocumentObject
 from ...objects.raster_path import RasterPath, proposed, replace_proposed
 from ...objects.stock import Stock
 from ..common import gates
-from ..common.compat import QtGui, translate
+from ..common.compat import QtCore, QtGui, translate
 from ..common.kinds import Widget
 from ..common.messages import error_text
 from ..scene.face_tint import FaceTint
@@ -28,6 +28,7 @@ from .panel import Panel
 
 MANY = 2_000_000  # samples; more are warned of
 SAMPLE_BYTES = 400  # of memory in a run, about
+PLAN_BELOW = 0.8  # of the area in tolerance: planned feeds are offered
 
 
 def check_tolerance(job: DocumentObject) -> None:
@@ -162,7 +163,7 @@ class JobPanel(Panel):
                 self.machine.summary,
                 not new,
             )
-        self.passes = None
+        self.passes = self.plan_then = None
         paths = [path for path in job_data.children(self.obj, RasterPath) if proposed(path)]
         if paths and new:
             box = QtGui.QWidget()
@@ -180,6 +181,12 @@ class JobPanel(Panel):
             self.passes.toggled.connect(form.setVisible)
             layout.addWidget(self.passes)
             layout.addWidget(form)
+            share = (self.first or {}).get("in_tolerance")
+            if share is not None and share < PLAN_BELOW:
+                self.plan_then = QtGui.QCheckBox(translate("BeltGrinding", "Plan feeds after OK"))
+                self.plan_then.setObjectName("planThen")
+                self.passes.toggled.connect(self.plan_then.setEnabled)
+                layout.addWidget(self.plan_then)
             title = translate("BeltGrinding", "Passes")
             yield Fold("foldPasses", title, box, lambda: paths[0].Feed.UserString)
 
@@ -296,7 +303,8 @@ class JobPanel(Panel):
             first["notes"], self.kind = [error], self._kind()
             return
         first_settings.apply(self.obj, found, first)
-        self.first = self.obj.Proxy.proposed = {**first, **found}
+        # What they bring is not known before the passes are laid.
+        self.first = self.obj.Proxy.proposed = {**first, **found, "in_tolerance": None}
         self.chosen, self.kind = self._numbers(), self._kind()
         for form in self.form.findChildren(Form):
             for name in form.rows:
@@ -361,6 +369,20 @@ class JobPanel(Panel):
         lines += [f"⚠ {error_text(note)}" for note in sides.notes(self.obj)]
         if self.first is not None:
             lines += [f"⚠ {error_text(note)}" for note in self.first["notes"]]
+            share = self.first.get("in_tolerance")
+            if share is not None and self._numbers() == self.chosen:
+                lines.append(
+                    translate(
+                        "BeltGrinding",
+                        "By a coarse run they bring {:.0f} % of the area into tolerance.",
+                    ).format(100.0 * share)
+                )
+                if share < PLAN_BELOW:
+                    lines.append(
+                        translate(
+                            "BeltGrinding", "⚠ Planned feeds bring more: tick Plan feeds after OK."
+                        )
+                    )
             if "feed_mm_s" in self.first and self._numbers() != self.chosen:
                 lines.append(
                     translate(
@@ -400,6 +422,14 @@ class JobPanel(Panel):
     def apply(self) -> None:
         if self.passes is not None and not self.passes.isChecked():
             replace_proposed(self.obj)
+
+    def accept(self) -> bool:
+        planned = self.plan_then is not None and self.plan_then.isChecked()
+        planned = planned and self.passes is not None and self.passes.isChecked()
+        accepted = super().accept()
+        if accepted and planned:
+            QtCore.QTimer.singleShot(0, lambda: Gui.runCommand("BeltGrinding_Plan"))
+        return accepted
 
     def close(self) -> None:
         gates.release(self.gate)

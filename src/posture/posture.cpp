@@ -44,7 +44,7 @@ void check(const std::vector<PassPose>& poses, const PostureOptions& options, co
     for (int j = 0; j < 6; ++j) {
         if (options.home[j] >= arm.lower()[j] && options.home[j] <= arm.upper()[j]) continue;
         throw InputError("posture.home",
-                         "robot.home_joints_deg: joint {joint} at {angle:.1f} deg is beyond its "
+                         "home: joint {joint} at {angle:.1f} deg is beyond its "
                          "limits of {lower:.1f} to {upper:.1f} deg",
                          {{"joint", j + 1},
                           {"angle", options.home[j] * 180.0 / M_PI},

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from . import background, outcome, outputs, plan, rounds_table, settings
+from . import background, outcome, outputs, plan, robot_program, rounds_table, settings
 from .messages import print_text
 from .program import add_form
 
@@ -41,6 +41,7 @@ def add(commands):
         help=f"the program's file in the folder; its suffix says the language ({PROGRAM})",
     )
     add_form(grind)
+    robot_program.add_unsafe(grind)
     grind.add_argument("-q", "--quiet", action="store_true", help="no progress, no summary")
     outcome.add(grind)
     outputs.add(grind)
@@ -94,6 +95,8 @@ def _grind(arguments):
     found = ground.plan if checked is None else checked.plan
     write(found, None if checked is None else checked.entry)
     arguments.messages.print_warnings(ground.laid["warnings"])
+    if robot_program.wanted(found.job):
+        notes[:] = robot_program.in_place_of(program, found.job, arguments)
     arguments.messages.print_written(notes)
     plan.tell_checked(arguments, checked)
     if not arguments.quiet:
@@ -167,9 +170,9 @@ def _check_name(name, form, job=None):
     import numpy as np
 
     from ..programs.force_device import of_job
-    from ..programs.writers.writer import _writer, write_program
+    from ..programs.writers.writer import check_suffix, write_program
 
-    _writer(Path(name).suffix.lower(), Path(name))
+    check_suffix(name)
     poses = np.stack([np.eye(4)] * 3)
     poses[:, 0, 3] = range(3)
     passes = [{"poses": poses, "feed_mm_s": 1.0}]

@@ -4,7 +4,7 @@ import json
 import math
 from pathlib import Path
 
-from . import background, outputs, settings
+from . import background, outputs, robot_program, settings
 
 
 def add(commands):
@@ -14,9 +14,11 @@ def add(commands):
         help="read a robot program, write changes back into it, or convert it",
         usage="beltgrind program FILE [-o POSES.csv] [--strict]\n"
         "       beltgrind program write ORIGINAL CHANGES.csv -o NEW\n"
-        "       beltgrind program convert FILE -o NEW.src|.mod|.script|.ls|.jbi|.csv",
+        "       beltgrind program convert FILE -o NEW.src|.mod|.script|.ls|.jbi|.csv\n"
+        "       beltgrind program robot JOB.json -o NEW.src|.mod|.script|.ls|.jbi|.csv [--unsafe]",
         description="Says what is in a robot program. write: changed speeds, forces and offsets "
-        "go back into the original, nothing else changes. convert: writes it in another language.",
+        "go back into the original, nothing else changes. convert: writes it in another language. robot: a program for "
+        "the whole robot, from home by links through a job's passes and back (docs/robot.md).",
     )
     program.add_argument("program", nargs="+", metavar="FILE", help="the program's file")
     program.add_argument("-o", "--output", help="CSV of every programmed pose; the new program")
@@ -54,6 +56,7 @@ def add(commands):
         action="store_true",
         help="write what the program asks for into NAME.values.json beside it, to be filled in",
     )
+    robot_program.add_unsafe(program)
     outputs.add(program)
     program.set_defaults(do=_program)
     raster = commands.add_parser("raster", help="lay passes on the job's faces (docs/raster.md)")
@@ -135,7 +138,7 @@ def _add_frames(command):
         )
 
 
-def _frames(arguments):
+def frames_given(arguments):
     """The options as ``write_program`` takes them."""
     return {"bases": _frame("base", arguments.base), "tools": _frame("tool", arguments.tool)}
 
@@ -200,6 +203,9 @@ def _program(arguments):
     from ..programs.writers.writer import write_program
 
     action, *files = arguments.program
+    if action == "robot":
+        robot_program.write(arguments, files)
+        return
     counts = {"write": 2, "convert": 1}
     if action not in counts:
         action, files = "read", arguments.program
@@ -214,6 +220,7 @@ def _program(arguments):
         raise InputError(
             "cli.program_output", "program {action}: say by -o what file to write", action=action
         )
+    robot_program.refuse_unsafe(arguments, action)
     if action != "convert" and (arguments.base or arguments.tool):
         raise InputError(
             "cli.frames_of_new_programs",
@@ -259,7 +266,9 @@ def _program(arguments):
         arguments.status = int(arguments.strict and read < said)
         if action == "convert" and arguments.status == 0 and read:
             options = {"form": arguments.form, "force_device": device}
-            notes = write_program(arguments.output, None, program, **_frames(arguments), **options)
+            notes = write_program(
+                arguments.output, None, program, **frames_given(arguments), **options
+            )
         elif arguments.write_values:
             data, varies = given.explored(
                 program, files[0], lambda values: read_program(files[0], values=values)
@@ -380,7 +389,7 @@ def _write_raster(arguments, file, job, found):
     try:
         made = raster.program(found, **_frame_words(job))
         followed = _as_followed(arguments.form, job)
-        notes = write_program(file, None, made, **_frames(arguments), **followed)
+        notes = write_program(file, None, made, **frames_given(arguments), **followed)
     except OSError as error:
         raise cannot_be_written(file, error) from None
     arguments.messages.print_warnings(found["warnings"])

@@ -4,7 +4,7 @@ import json
 import math
 from pathlib import Path
 
-from . import background, outputs, robot_program, settings
+from . import background, frames_options, outputs, robot_program, settings
 
 
 def add(commands):
@@ -22,7 +22,7 @@ def add(commands):
     )
     program.add_argument("program", nargs="+", metavar="FILE", help="the program's file")
     program.add_argument("-o", "--output", help="CSV of every programmed pose; the new program")
-    _add_frames(program)
+    frames_options.add(program)
     program.add_argument(
         "--force-device",
         metavar="JSON",
@@ -95,7 +95,7 @@ def add(commands):
         metavar="FILE",
         help="PNG of the passes on the part from two sides, and of what is left out and why",
     )
-    _add_frames(raster)
+    frames_options.add(raster)
     add_form(raster)
     outputs.add(raster)
     raster.set_defaults(do=_raster)
@@ -124,43 +124,6 @@ def _as_followed(form, job):
 
     pace = robot_time.limits(job).pace
     return {"form": form, "digits": "robot", "force_device": of_job(job), "pace": pace}
-
-
-def _add_frames(command):
-    """The options ``--base`` and ``--tool`` of a new program."""
-    for what, name, example in (("base", "BASE", "BASE_DATA"), ("tool", "TOOL", "TOOL_DATA")):
-        command.add_argument(
-            f"--{what}",
-            metavar=name,
-            help=f"what a new program sets as its {what}: the controller's own (KRL: n of {example}[n]; "
-            "RAPID: a name), numbers X,Y,Z,A,B,C in mm and degrees, or as-known: the numbers that are "
-            "known of it (default: nothing; the program's head says what to set)",
-        )
-
-
-def frames_given(arguments):
-    """The options as ``write_program`` takes them."""
-    return {"bases": _frame("base", arguments.base), "tools": _frame("tool", arguments.tool)}
-
-
-def _frame(what, given):
-    from ..base.frames import from_abc
-    from ..engine import InputError
-
-    if given is None or "," not in given:
-        return given
-    try:
-        values = [float(value) for value in given.split(",")]
-        if len(values) != 6 or not all(map(math.isfinite, values)):
-            raise ValueError
-    except ValueError:
-        raise InputError(
-            "cli.frame_numbers",
-            "--{what} {given}: write X,Y,Z,A,B,C, mm and degrees, as in --{what}=0,0,120.5,0,90,0",
-            what=what,
-            given=given,
-        ) from None
-    return from_abc(values[:3], values[3:])
 
 
 def _roll(arguments):
@@ -267,7 +230,7 @@ def _program(arguments):
         if action == "convert" and arguments.status == 0 and read:
             options = {"form": arguments.form, "force_device": device}
             notes = write_program(
-                arguments.output, None, program, **frames_given(arguments), **options
+                arguments.output, None, program, **frames_options.given(arguments), **options
             )
         elif arguments.write_values:
             data, varies = given.explored(
@@ -389,7 +352,7 @@ def _write_raster(arguments, file, job, found):
     try:
         made = raster.program(found, **_frame_words(job))
         followed = _as_followed(arguments.form, job)
-        notes = write_program(file, None, made, **frames_given(arguments), **followed)
+        notes = write_program(file, None, made, **frames_options.given(arguments), **followed)
     except OSError as error:
         raise cannot_be_written(file, error) from None
     arguments.messages.print_warnings(found["warnings"])

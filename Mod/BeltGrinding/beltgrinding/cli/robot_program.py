@@ -2,7 +2,7 @@
 
 import json
 
-from . import background, outputs
+from . import background, frames_options, outputs
 
 
 def add_unsafe(command):
@@ -31,7 +31,6 @@ def write(arguments, files):
     from ..job import inputs, load as jobs
     from ..programs.writers.writer import check_suffix
     from ..robot_program import write as writing
-    from .program import frames_given
 
     if len(files) != 1 or not arguments.output:
         raise InputError(
@@ -49,7 +48,7 @@ def write(arguments, files):
             whole,
             form=arguments.form,
             unsafe=arguments.unsafe,
-            **frames_given(arguments),
+            **frames_options.given(arguments),
         )
     except OSError as error:
         raise cannot_be_written(arguments.output, error) from None

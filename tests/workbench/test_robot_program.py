@@ -14,6 +14,7 @@ from test_raster import X, job_of, plate
 from beltgrinding.base import frames
 from beltgrinding.engine import InputError
 from beltgrinding.job import load as jobs, poses
+from beltgrinding.planning import commands, rounds
 from beltgrinding.presets import library
 from beltgrinding.programs.registry import read_program
 from beltgrinding.programs.writers import fanuc, krl, rapid
@@ -271,6 +272,15 @@ def test_joints_accelerations_lower_feeds(laid):
     feeds = [[m.feed for m in one.moves if m.kind == "LIN"] for one in (free, slow)]
     assert len(feeds[0]) == len(feeds[1])
     assert all(b <= a * (1 + 1e-9) for a, b in zip(*feeds)) and min(feeds[1]) < min(feeds[0])
+
+
+def test_plans_keep_to_what_the_joints_can_follow(laid):
+    settings = rounds.validate({"feed_max_mm_s": 400})
+    ranges = []
+    for own in ({}, {"joint_acceleration_deg_s2": [20] * 6}):
+        job, wanted = rounds.in_time(cell(laid=laid, **own), settings)
+        ranges.append(commands.Commands(job, wanted).feed_range[1])
+    assert (ranges[1] <= ranges[0] + 1e-9).all() and (ranges[1] < 0.8 * ranges[0]).any()
 
 
 def test_passes_in_the_order_of_the_least_way():

@@ -16,6 +16,7 @@ from ..job.settings import Job
 from ..job.typed import typed
 from ..presets import robot as robots
 from ..programs.force_device import of_job
+from ..robot_program import feeds as joint_feeds, whole as robot_program
 
 STILL = 1e-9  # mm; less is no way
 PATH = (
@@ -143,7 +144,7 @@ class Commands:
 
     def _feed_range(self, settings: Json) -> tuple[Floats, Floats]:
         """Least and greatest feeds of commands, mm/s: as the settings say, and in the robot's time no greater than its
-        blocks and its accelerations let it go."""
+        blocks, its accelerations and, in a job with a home, its joints let it go."""
         least, greatest = settings["feed_min_mm_s"], settings["feed_max_mm_s"]
         whole = np.full(len(self), greatest)
         if self.limits is None:
@@ -151,6 +152,9 @@ class Commands:
         way = self._lengths()
         block = np.where(way > STILL, way / self.limits.least_block_s, np.inf)
         np.minimum.at(whole, self.group, np.where(self.rapid, np.inf, block))
+        if robot_program.wanted(self.job):
+            joints = joint_feeds.greatest(typed(self.job), self.arrays, greatest)
+            np.minimum.at(whole, self.group, np.where(self.rapid, np.inf, joints))
         fastest = np.where(self.kept, self.feed(), whole)
         seconds, own = self.times(fastest), self.way()
         reached = np.where(own > STILL, own / np.maximum(seconds, 1e-12), greatest)

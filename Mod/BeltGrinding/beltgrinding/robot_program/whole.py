@@ -77,10 +77,12 @@ def plan(
         )
     if shape is None and job.cell.check_collisions:
         shape = read_design(job.design, context)
-    return _Planner(job, index, shape, context).run()
+    return Planner(job, index, shape, context).run()
 
 
-class _Planner:
+class Planner:
+    """Of a validated job's program number ``index``: its passes, and the scenes that they lie in."""
+
     def __init__(
         self, job: Job, index: int, shape: core.Shape | None, context: core.RunContext
     ) -> None:
@@ -106,8 +108,7 @@ class _Planner:
         self._check_place(self.home, "robot.program.home_joints_deg", 0)
         for number, safe in enumerate(self.settings.safe_joints_deg):
             self._check_place(np.radians(safe), f"robot.program.safe_joints_deg[{number}]", 0)
-        options = self._options()
-        found = self.scenes.passes.postures(self.path, options, self.context.part(0.0, 0.6))
+        found = self.postures(self.context.part(0.0, 0.6))
         self._move(
             Move("PTP", self._frame(self.home), np.degrees(self.home), note="home"), look=False
         )
@@ -120,6 +121,19 @@ class _Planner:
         self._tell(found)
         self.context.report(1.0)
         return self.whole
+
+    def postures(self, context: core.RunContext) -> dict[str, Any]:
+        """As ``ArmScene.postures`` gives them, of the passes in their order."""
+        return self.scenes.passes.postures(self.path, self._options(), context)
+
+    def feeds(self, context: core.RunContext) -> Floats:
+        """(poses,) mm/s at which the joints can follow each motion of the program's passes, no more than its own; inf of
+        rapid motions, and where the arm does not get."""
+        found = np.full(len(self.given["feeds"]), np.inf)
+        for pose in self.postures(context)["poses"]:
+            if pose["reached"] and not pose["link"]:
+                found[self.rows[pose["pose"]]] = self._motion(pose).feed
+        return found
 
     def _passes(self) -> list[Pass]:
         rapid = self.given["rapid"]
@@ -146,7 +160,7 @@ class _Planner:
 
     def _in_order(self) -> core.ToolPath:
         rows = self.rows
-        arrays = {
+        arrays: dict[str, Any] = {
             name: values[rows]
             for name, values in self.given.items()
             if isinstance(values, np.ndarray) and len(values) == len(self.given["rapid"])

@@ -143,7 +143,7 @@ def joints_of_file(file: Path, job: Job | Json) -> Floats:
     """(n, 6) degrees: the joints at the poses of a program's file, as the job's robot follows it."""
     job = typed(job)
     robot = records.plain(job.robot)
-    arrays = read_program(file, force_device=of_job(job)).path_arrays(
+    arrays: dict[str, Any] = read_program(file, force_device=of_job(job)).path_arrays(
         wholes.STEP, robots.pose_function(robot)
     )
     arrays.pop("gaps")

@@ -20,12 +20,12 @@ packages_build=(g++ cmake ninja-build ccache libeigen3-dev pybind11-dev python3-
     libocct-foundation-dev libocct-modeling-data-dev libocct-modeling-algorithms-dev
     libocct-data-exchange-dev libocct-ocaf-dev libembree-dev libhdf5-dev
     libcoin-dev libgl-dev qttools5-dev-tools
-    libnanoflann-dev lib3mf-dev libassimp-dev libfcl-dev libsvm-dev python3-pythran libgtest-dev libbenchmark-dev
+    libnanoflann-dev lib3mf-dev libassimp-dev libfcl-dev libompl-dev libsvm-dev python3-pythran libgtest-dev libbenchmark-dev
     libfontconfig-dev) # OpenCASCADE 7.8 names it among its own libraries, and its package does not
 packages_run=(freecad python3-numpy python3-jsonschema python3-matplotlib python3-pil libjs-three
     python3-dask python3-distributed python3-openturns xvfb xauth libgl1-mesa-dri)
 packages_docs=(mkdocs mkdocs-material doxygen graphviz)
-packages_test=(pkg-config "${packages_docs[@]}" weasyprint poppler-utils zsh fish groff-base chromium python3-pytest python3-pytest-xdist python3-scipy python3-h5py python3-yaml mypy pmccabe calculix-ccx cloudcompare slurmctld slurmd slurm-client)
+packages_test=(pkg-config python3-pykdl "${packages_docs[@]}" weasyprint poppler-utils zsh fish groff-base chromium python3-pytest python3-pytest-xdist python3-scipy python3-h5py python3-yaml mypy pmccabe calculix-ccx cloudcompare slurmctld slurmd slurm-client)
 
 say() { printf '%s\n' "$*" >&2; }
 

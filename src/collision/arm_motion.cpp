@@ -21,6 +21,18 @@ Between between(double place, std::size_t moments) {
     return {i, std::min(i + 1, moments - 1), place - static_cast<double>(i)};
 }
 
+/// mm along the arm at most from a point of axis `from` (joints from 0; 6: the flange) to one of
+/// axis `to`, whatever the joints are.
+double chain(const RobotArm& arm, std::size_t from, std::size_t to) {
+    double length = 0.0;
+    for (std::size_t k = from; k < to; ++k) {
+        const Vec3 next =
+            k == 5 ? Vec3(arm.home().translation()) : arm.point(static_cast<int>(k + 1));
+        length += (next - arm.point(static_cast<int>(k))).norm();
+    }
+    return length;
+}
+
 }  // namespace
 
 ArmTravel::ArmTravel(const ToolPath& path, const ArmInCell& arm) : path_(path), arm_(arm) {
@@ -49,30 +61,41 @@ Joints ArmTravel::joints(double place) const {
     return a + share * (b - a);
 }
 
-double ArmTravel::chain(std::size_t from, std::size_t to) const {
-    double length = 0.0;
-    for (std::size_t k = from; k < to; ++k) {
-        const Vec3 next =
-            k == 5 ? Vec3(arm_.arm.home().translation()) : arm_.arm.point(static_cast<int>(k + 1));
-        length += (next - arm_.arm.point(static_cast<int>(k))).norm();
-    }
-    return length;
-}
-
-ArmMotion::ArmMotion(const ArmTravel& travel, Carrier other, std::size_t link, double reach)
-    : travel_(travel),
-      carried_(carried(other, travel.path().frames().holding)),
-      link_(link),
-      holder_from_first_(holder_from(other, travel.path().frames())) {
+std::array<double, 6> joint_levers(const RobotArm& arm, bool is_carried, std::size_t link,
+                                   double reach) {
     // The points of the link are moved by the joints before it; those of what is carried, against
     // the link, by the joints behind it. Each moves them by its turn times their distance from its
     // axis at most.
-    if (carried_) {
-        for (std::size_t j = link; j < 6; ++j) levers_[j] = travel.chain(j, 6) + reach;
-    } else {
-        for (std::size_t j = 0; j < link; ++j) levers_[j] = travel.chain(j, link - 1) + reach;
-    }
+    std::array<double, 6> levers{};
+    const std::size_t begin = is_carried ? link : 0, end = is_carried ? 6 : link;
+    for (std::size_t j = begin; j < end; ++j)
+        levers[j] = chain(arm, j, is_carried ? 6 : link - 1) + reach;
+    return levers;
 }
+
+std::array<double, 6> joint_levers(const ArmInCell& arm, const CellFrames& cell,
+                                   const CollisionBody& first, const CollisionMesh& first_mesh,
+                                   const CollisionBody& second, const CollisionMesh& second_mesh) {
+    const bool of_link = second.carrier == Carrier::kLink;
+    const CollisionBody& held = of_link ? first : second;
+    if (carried(held.carrier, cell.holding)) {
+        const Frame flange_from_held = arm.flange_from_tcp * holder_from(held.carrier, cell);
+        const CollisionMesh& mesh = of_link ? first_mesh : second_mesh;
+        return joint_levers(arm.arm, true, of_link ? second.link : 0,
+                            mesh.reach(flange_from_held.inverse().translation()));
+    }
+    const double reach =
+        second.link > 0 ? second_mesh.reach(arm.arm.point(static_cast<int>(second.link) - 1)) : 0.0;
+    return joint_levers(arm.arm, false, second.link, reach);
+}
+
+ArmMotion::ArmMotion(const ArmTravel& travel, Carrier other, std::size_t link,
+                     const std::array<double, 6>& levers)
+    : travel_(travel),
+      carried_(carried(other, travel.path().frames().holding)),
+      link_(link),
+      holder_from_first_(holder_from(other, travel.path().frames())),
+      levers_(levers) {}
 
 std::vector<PairMotion::Stretch> ArmMotion::stretches() const {
     std::vector<Stretch> all;

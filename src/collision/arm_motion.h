@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "collision/collision_check.h"
+#include "collision/collision_mesh.h"
 #include "pair_motion.h"
 
 namespace beltgrinding {
@@ -21,15 +22,24 @@ class ArmTravel {
     double turn(std::size_t joint, double begin, double end) const;
     /// By joint interpolation; where two moments are not joined, those of the nearer.
     Joints joints(double place) const;
-    /// mm along the arm at most from a point of axis `from` (joints from 0; 6: the flange) to one
-    /// of axis `to`, whatever the joints are.
-    double chain(std::size_t from, std::size_t to) const;
 
   private:
     const ToolPath& path_;
     const ArmInCell& arm_;
     std::array<std::vector<double>, 6> turned_;  ///< rad, sums up to each moment
 };
+
+/// mm by which a radian of each joint moves a body's points at most, whatever the joints are; of
+/// joints that do not move it 0. `link`: the body's, against what stands still, or `is_carried`:
+/// against which a body at the flange moves (0: what stands still). `reach`: mm, from the link's
+/// axis point, or from the flange's origin, to the farthest point of the body that moves.
+std::array<double, 6> joint_levers(const RobotArm& arm, bool is_carried, std::size_t link,
+                                   double reach);
+
+/// The same of the meshes of two bodies that meet (`meets`).
+std::array<double, 6> joint_levers(const ArmInCell& arm, const CellFrames& cell,
+                                   const CollisionBody& first, const CollisionMesh& first_mesh,
+                                   const CollisionBody& second, const CollisionMesh& second_mesh);
 
 /// s since the program's begin at a place of the arm's way.
 double arm_time(const ArmInCell& arm, double place);
@@ -38,10 +48,10 @@ double arm_time(const ArmInCell& arm, double place);
 /// second.
 class ArmMotion : public PairMotion {
   public:
-    /// `link`: 0 is the foot. `reach`: mm from the link's axis point (the foot: not used) or, of a
-    /// body that is carried, from the flange's origin, to the farthest point of the body that moves
-    /// against the other. Keeps a reference to `travel`.
-    ArmMotion(const ArmTravel& travel, Carrier other, std::size_t link, double reach);
+    /// `link`: 0 is the foot. `levers`: as `joint_levers` gives them. Keeps a reference to
+    /// `travel`.
+    ArmMotion(const ArmTravel& travel, Carrier other, std::size_t link,
+              const std::array<double, 6>& levers);
 
     std::vector<Stretch> stretches() const override;
     double way(double begin, double end) const override;
@@ -57,7 +67,7 @@ class ArmMotion : public PairMotion {
     bool carried_;
     std::size_t link_;
     Frame holder_from_first_;
-    std::array<double, 6> levers_{};  ///< mm; of joints that do not move the pair: 0
+    std::array<double, 6> levers_;  ///< mm; of joints that do not move the pair: 0
 };
 
 }  // namespace beltgrinding

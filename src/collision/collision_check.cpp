@@ -17,7 +17,6 @@ namespace beltgrinding {
 namespace {
 
 constexpr std::size_t kLinks = 7;
-constexpr std::size_t kAtFlange = 5;  // links from here on hold what is at the flange
 
 Fact meeting(bool collides, bool rapid, Arguments arguments, double distance) {
     if (collides && rapid)
@@ -118,30 +117,6 @@ class Report {
     const CollisionOptions& options_;
 };
 
-/// Whether a pair is looked at, the first standing still or, with a link, anything but a link.
-bool meets(const CollisionBody& first, const CollisionBody& second, Holding holding) {
-    const bool held = carried(first.carrier, holding);
-    if (first.carrier == Carrier::kLink) return false;
-    if (second.carrier != Carrier::kLink) return !held && carried(second.carrier, holding);
-    if (held) return second.link < kAtFlange;
-    return second.link > 0 || first.carrier != Carrier::kBase;
-}
-
-std::unique_ptr<const PairMotion> arm_motion(const ArmTravel& travel, const CollisionBody& other,
-                                             const CollisionMesh& mesh, const CollisionBody& link,
-                                             const CollisionMesh& link_mesh) {
-    const CellFrames& cell = travel.path().frames();
-    double reach = 0.0;
-    if (carried(other.carrier, cell.holding)) {
-        const Frame flange_from_other =
-            travel.arm().flange_from_tcp * holder_from(other.carrier, cell);
-        reach = mesh.reach(flange_from_other.inverse().translation());
-    } else if (link.link > 0) {
-        reach = link_mesh.reach(travel.arm().arm.point(static_cast<int>(link.link) - 1));
-    }
-    return std::make_unique<ArmMotion>(travel, other.carrier, link.link, reach);
-}
-
 void check_links(const std::vector<CollisionBody>& bodies, const ArmInCell* arm) {
     for (const CollisionBody& body : bodies) {
         if (body.carrier == Carrier::kLink && (arm == nullptr || body.link >= kLinks)) {
@@ -193,7 +168,9 @@ CollisionResult check_collisions(const ToolPath& path, const std::vector<Collisi
                     std::make_unique<PathMotion>(path_travel, first.carrier, second.carrier,
                                                  meshes[b].reach(holder.inverse().translation()));
             } else if (arm_travel) {
-                motion = arm_motion(*arm_travel, first, meshes[a], second, meshes[b]);
+                motion = std::make_unique<ArmMotion>(
+                    *arm_travel, first.carrier, second.link,
+                    joint_levers(*arm, path.frames(), first, meshes[a], second, meshes[b]));
             } else {
                 continue;  // nowhere in reach
             }

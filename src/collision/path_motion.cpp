@@ -10,7 +10,8 @@ namespace {
 // motions; by less than this factor for turns below half a turn.
 constexpr double kCornerTurn = 1.5;
 
-constexpr std::size_t kBlock = 64;  // motions that are followed by themselves
+constexpr std::size_t kAtFlange = 5;  // links from here on hold what is at the flange
+constexpr std::size_t kBlock = 64;    // motions that are followed by themselves
 
 /// Where a place lies on the path: in the motion to a pose.
 struct Moment {
@@ -40,6 +41,14 @@ Frame holder_from(Carrier carrier, const CellFrames& cell) {
         default:
             return Frame::Identity();
     }
+}
+
+bool meets(const CollisionBody& first, const CollisionBody& second, Holding holding) {
+    const bool held = carried(first.carrier, holding);
+    if (first.carrier == Carrier::kLink) return false;
+    if (second.carrier != Carrier::kLink) return !held && carried(second.carrier, holding);
+    if (held) return second.link < kAtFlange;
+    return second.link > 0 || first.carrier != Carrier::kBase;
 }
 
 PathTravel::PathTravel(const ToolPath& path) : path_(path) {

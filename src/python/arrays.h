@@ -136,5 +136,6 @@ void bind_picture(py::module_& m);
 void bind_thinning(py::module_& m);
 void bind_collision(py::module_& m);
 void bind_toolpath(py::module_& m);
+void bind_posture(py::module_& m);
 
 }  // namespace beltgrinding::python

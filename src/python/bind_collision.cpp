@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "collision/collision_check.h"
+#include "bodies.h"
 #include "collision/standing.h"
 #include "dict.h"
 
@@ -18,16 +18,10 @@ Carrier carrier_from(const std::string& name) {
                      {{"name", name}});
 }
 
-/// What a check has found, for any path that goes the same way.
-struct CollisionFindings {
-    CollisionResult result;
-    std::vector<std::string> names;  ///< of the bodies
-};
+}  // namespace
 
-CollisionFindings find(const ToolPath& path, const py::list& given, double clearance,
-                       double resolution, const ArmInCell* arm, const RunContext* context) {
+std::vector<CollisionBody> bodies_from(const py::list& given) {
     std::vector<CollisionBody> bodies;
-    CollisionFindings found;
     for (const auto& one : given) {
         py::dict d = copy_of(one.cast<py::dict>());
         CollisionBody body;
@@ -37,9 +31,24 @@ CollisionFindings find(const ToolPath& path, const py::list& given, double clear
         body.margin = take(d, "margin", 0.0);
         body.link = take(d, "link", std::size_t{0});
         refuse_rest(d, "body");
-        found.names.push_back(body.name);
         bodies.push_back(std::move(body));
     }
+    return bodies;
+}
+
+namespace {
+
+/// What a check has found, for any path that goes the same way.
+struct CollisionFindings {
+    CollisionResult result;
+    std::vector<std::string> names;  ///< of the bodies
+};
+
+CollisionFindings find(const ToolPath& path, const py::list& given, double clearance,
+                       double resolution, const ArmInCell* arm, const RunContext* context) {
+    const std::vector<CollisionBody> bodies = bodies_from(given);
+    CollisionFindings found;
+    for (const CollisionBody& body : bodies) found.names.push_back(body.name);
     const py::gil_scoped_release release;
     found.result = check_collisions(path, bodies, {clearance, resolution},
                                     context != nullptr ? *context : RunContext(), arm);

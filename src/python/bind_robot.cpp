@@ -157,6 +157,19 @@ void bind_robot(py::module_& m) {
             py::arg("q"),
             "robot_from_link (7, 4, 4) of the foot and what each joint carries; identities at q = "
             "0")
+        .def(
+            "configuration",
+            [](const RobotArm& arm, const Joints& q) {
+                const ArmConfiguration at = configuration_at(arm, q);
+                py::dict d;
+                d["behind"] = at.behind;
+                d["below"] = at.below;
+                d["back"] = at.back;
+                d["flipped"] = at.flipped;
+                return d;
+            },
+            py::arg("q"), "Which of its configurations it is in; see ArmConfiguration.")
+        .def_property_readonly("max_speed", [](const RobotArm& arm) { return arm.max_speed(); })
         .def("jacobian", &RobotArm::jacobian, py::arg("q"),
              "(6, 6): velocity of the flange (mm) and angular velocity per joint speed")
         .def(

@@ -111,4 +111,5 @@ PYBIND11_MODULE(beltgrinding_core, m) {
     bind_robot(m);
     bind_collision(m);
     bind_toolpath(m);
+    bind_posture(m);
 }

@@ -211,6 +211,28 @@ Eigen::Matrix<double, 6, 6> RobotArm::jacobian(const Joints& q) const {
     return j;
 }
 
+namespace {
+
+/// Sine of the elbow's turn out of the stretched arm, about axis 3, times lengths.
+double bent(const RobotArm::Placed& at) {
+    return at.axis[2].dot(across(at.point[2] - at.point[1], at.axis[2])
+                              .cross(across(at.wrist - at.point[2], at.axis[2])));
+}
+
+}  // namespace
+
+ArmConfiguration configuration_at(const RobotArm& arm, const Joints& q) {
+    ArmConfiguration found;
+    const RobotArm::Placed now = arm.placed(q);
+    const Vec3 forward =
+        rotation(arm.axis(0), arm.geometric(q)[0]) * across(Vec3::UnitX(), arm.axis(0));
+    found.behind = forward.dot(now.wrist - now.point[0]) < 0.0;
+    found.below = bent(now) < 0.0;
+    found.flipped = now.axis[4].dot(now.axis[3].cross(now.axis[5])) < 0.0;
+    found.back = (bent(now) < 0.0) != (bent(arm.placed(Joints::Zero())) < 0.0);
+    return found;
+}
+
 SingularDistance singular_distance(const RobotArm& arm, const Joints& q) {
     SingularDistance near;
     if (arm.structure() == RobotArm::Structure::kGeneral) {

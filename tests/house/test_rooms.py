@@ -28,6 +28,7 @@ PACKAGES = [
     (r"assimp/.*", "assimp"),
     (r"lib3mf/.*|lib3mf_\w+\.hpp", "lib3mf"),
     (r"fcl/.*", "FCL"),
+    (r"ompl/.*", "OMPL"),
     (r"fmt/\w+\.h", "fmt"),
     (r"libsvm/svm\.h", "libsvm"),
     (r"pocketfft(_hdronly|)\.(hpp|h)", "pocketfft"),

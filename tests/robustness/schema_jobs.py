@@ -249,6 +249,10 @@ class _Maker:
     def robot_start_joints_deg(self):
         return self.dice.choice(([], [self.dice.uniform(-90, 90) for _ in range(6)]))
 
+    def robot_program(self):
+        home = [self.dice.uniform(-90, 90) for _ in range(6)]
+        return self.dice.choice(({}, {"home_joints_deg": home, "order": "least_way"}))
+
     def robot_link_radii_mm(self):
         return self.dice.choice(([], [50.0] * 7))
 

@@ -3,7 +3,7 @@
 import functools
 from pathlib import Path
 
-from . import background, outcome, outputs, plan, rounds_table, searching, settings
+from . import background, outcome, outputs, plan, robot_program, rounds_table, searching, settings
 from .messages import print_text
 from .program import add_form
 
@@ -43,6 +43,7 @@ def add(commands):
     )
     add_form(grind)
     searching.add(grind)
+    robot_program.add_unsafe(grind)
     grind.add_argument("-q", "--quiet", action="store_true", help="no progress, no summary")
     outcome.add(grind)
     outputs.add(grind)
@@ -103,6 +104,8 @@ def _grind(arguments):
     found = ground.plan if checked is None else checked.plan
     write(found, None if checked is None else checked.entry)
     arguments.messages.print_warnings(ground.laid["warnings"])
+    if robot_program.wanted(found.job):
+        notes[:] = robot_program.in_place_of(program, found.job, arguments)
     arguments.messages.print_written(notes)
     plan.tell_checked(arguments, checked)
     searching.tell(arguments, ground)
@@ -177,9 +180,9 @@ def _check_name(name, form, job=None):
     import numpy as np
 
     from ..programs.force_device import of_job
-    from ..programs.writers.writer import _writer, write_program
+    from ..programs.writers.writer import check_suffix, write_program
 
-    _writer(Path(name).suffix.lower(), Path(name))
+    check_suffix(name)
     poses = np.stack([np.eye(4)] * 3)
     poses[:, 0, 3] = range(3)
     passes = [{"poses": poses, "feed_mm_s": 1.0}]

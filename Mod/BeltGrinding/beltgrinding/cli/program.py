@@ -4,7 +4,7 @@ import json
 import math
 from pathlib import Path
 
-from . import background, outputs, settings
+from . import background, frames_options, outputs, robot_program, settings
 
 
 def add(commands):
@@ -14,13 +14,15 @@ def add(commands):
         help="read a robot program, write changes back into it, or convert it",
         usage="beltgrind program FILE [-o POSES.csv] [--strict]\n"
         "       beltgrind program write ORIGINAL CHANGES.csv -o NEW\n"
-        "       beltgrind program convert FILE -o NEW.src|.mod|.script|.ls|.jbi|.csv",
+        "       beltgrind program convert FILE -o NEW.src|.mod|.script|.ls|.jbi|.csv\n"
+        "       beltgrind program robot JOB.json -o NEW.src|.mod|.script|.ls|.jbi|.csv [--unsafe]",
         description="Says what is in a robot program. write: changed speeds, forces and offsets "
-        "go back into the original, nothing else changes. convert: writes it in another language.",
+        "go back into the original, nothing else changes. convert: writes it in another language. robot: a program for "
+        "the whole robot, from home by links through a job's passes and back (docs/robot.md).",
     )
     program.add_argument("program", nargs="+", metavar="FILE", help="the program's file")
     program.add_argument("-o", "--output", help="CSV of every programmed pose; the new program")
-    _add_frames(program)
+    frames_options.add(program)
     program.add_argument(
         "--force-device",
         metavar="JSON",
@@ -59,6 +61,7 @@ def add(commands):
         action="store_true",
         help="write what the program asks for into NAME.values.json beside it, to be filled in",
     )
+    robot_program.add_unsafe(program)
     outputs.add(program)
     program.set_defaults(do=_program)
     raster = commands.add_parser("raster", help="lay passes on the job's faces (docs/raster.md)")
@@ -97,7 +100,7 @@ def add(commands):
         metavar="FILE",
         help="PNG of the passes on the part from two sides, and of what is left out and why",
     )
-    _add_frames(raster)
+    frames_options.add(raster)
     add_form(raster)
     outputs.add(raster)
     raster.set_defaults(do=_raster)
@@ -140,43 +143,6 @@ def _form_of_controller(arguments):
     return options["form"], told
 
 
-def _add_frames(command):
-    """The options ``--base`` and ``--tool`` of a new program."""
-    for what, name, example in (("base", "BASE", "BASE_DATA"), ("tool", "TOOL", "TOOL_DATA")):
-        command.add_argument(
-            f"--{what}",
-            metavar=name,
-            help=f"what a new program sets as its {what}: the controller's own (KRL: n of {example}[n]; "
-            "RAPID: a name), numbers X,Y,Z,A,B,C in mm and degrees, or as-known: the numbers that are "
-            "known of it (default: nothing; the program's head says what to set)",
-        )
-
-
-def _frames(arguments):
-    """The options as ``write_program`` takes them."""
-    return {"bases": _frame("base", arguments.base), "tools": _frame("tool", arguments.tool)}
-
-
-def _frame(what, given):
-    from ..base.frames import from_abc
-    from ..engine import InputError
-
-    if given is None or "," not in given:
-        return given
-    try:
-        values = [float(value) for value in given.split(",")]
-        if len(values) != 6 or not all(map(math.isfinite, values)):
-            raise ValueError
-    except ValueError:
-        raise InputError(
-            "cli.frame_numbers",
-            "--{what} {given}: write X,Y,Z,A,B,C, mm and degrees, as in --{what}=0,0,120.5,0,90,0",
-            what=what,
-            given=given,
-        ) from None
-    return from_abc(values[:3], values[3:])
-
-
 def _roll(arguments):
     """``--roll`` as ``read_program`` takes it."""
     from ..engine import InputError
@@ -217,6 +183,9 @@ def _program(arguments):
     from ..programs.writers.writer import write_program
 
     action, *files = arguments.program
+    if action == "robot":
+        robot_program.write(arguments, files)
+        return
     counts = {"write": 2, "convert": 1}
     if action not in counts:
         action, files = "read", arguments.program
@@ -231,6 +200,7 @@ def _program(arguments):
         raise InputError(
             "cli.program_output", "program {action}: say by -o what file to write", action=action
         )
+    robot_program.refuse_unsafe(arguments, action)
     if action != "convert" and (arguments.base or arguments.tool):
         raise InputError(
             "cli.frames_of_new_programs",
@@ -280,7 +250,9 @@ def _program(arguments):
         if action == "convert" and arguments.status == 0 and read:
             form, told = _form_of_controller(arguments)
             options = {"form": form, "force_device": device}
-            notes = write_program(arguments.output, None, program, **_frames(arguments), **options)
+            notes = write_program(
+                arguments.output, None, program, **frames_options.given(arguments), **options
+            )
             notes += told
         elif arguments.write_values:
             data, varies = given.explored(
@@ -402,7 +374,8 @@ def _write_raster(arguments, file, job, found):
     try:
         made = raster.program(found, **_frame_words(job))
         followed, told = _as_followed(arguments.form, job, file)
-        notes = write_program(file, None, made, **_frames(arguments), **followed) + told
+        notes = write_program(file, None, made, **frames_options.given(arguments), **followed)
+        notes += told
     except OSError as error:
         raise cannot_be_written(file, error) from None
     arguments.messages.print_warnings(found["warnings"])

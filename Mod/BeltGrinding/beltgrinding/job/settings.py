@@ -367,6 +367,24 @@ class RobotModel:
 
 
 @dataclass(frozen=True, kw_only=True)
+class RobotProgram:
+    """``robot.program`` of a job."""
+
+    home_joints_deg: tuple[float, ...]
+    safe_joints_deg: tuple[tuple[float, float, float, float, float, float], ...]
+    order: Literal["program", "least_way"]
+    roll_deg: float
+    lean_deg: float
+    shift_share: float
+    retract_mm: float
+    retract_feed_mm_s: float
+    clearance_mm: float
+    joint_speed_percent: float
+    joint_acceleration_deg_s2: tuple[float, ...]
+    seed: int
+
+
+@dataclass(frozen=True, kw_only=True)
 class Robot:
     """``robot`` of a job."""
 
@@ -375,6 +393,7 @@ class Robot:
     model: RobotModel
     base_from_robot: Frame | None = None
     flange_from_tcp: Frame | None = None
+    program: RobotProgram
     start_joints_deg: tuple[float, ...]
     link_radii_mm: tuple[float, ...]
     singularity_deg: float

@@ -109,6 +109,7 @@ KEYS = (
     Key("Robot", "String", "Robot", "robot.preset"),
     Key("Controller", "String", "Robot", "robot.controller"),
     Key("RobotModel", "JSON", "Robot", "robot.model"),
+    Key("RobotProgram", "JSON", "Robot", "robot.program"),
     Key("StartJoints", "JSON", "Robot", "robot.start_joints_deg"),
     Key("LinkRadii", "JSON", "Robot", "robot.link_radii_mm"),
     Key("SingularityAngle", "Angle", "Robot", "robot.singularity_deg"),

@@ -17,6 +17,7 @@ from ..job.settings import Job
 from ..job.typed import typed
 from ..presets import robot as robots
 from ..programs.force_device import of_job
+from ..robot_program import feeds as joint_feeds, whole as robot_program
 
 STILL = 1e-9  # mm; less is no way
 SAME = 1e-6  # of a time
@@ -155,7 +156,7 @@ class Commands:
 
     def _feed_range(self, settings: Json) -> tuple[Floats, Floats]:
         """Least and greatest feeds of commands, mm/s: as the settings say, and in the robot's time no greater than its
-        blocks and its accelerations let it go."""
+        blocks, its accelerations and, in a job with a home, its joints let it go."""
         faster = self._over_contact()
         least = faster * settings["feed_min_mm_s"]
         whole = faster * settings["feed_max_mm_s"]
@@ -173,6 +174,9 @@ class Commands:
         np.minimum.at(whole, self.group, np.where(self.rapid, np.inf, block))
         # Slower than its own feeds a file's program is not made: that would only cut deeper.
         whole = np.where(self.too_short(), np.minimum(self.feed(), allowed), whole)
+        if robot_program.wanted(self.job):
+            joints = joint_feeds.greatest(typed(self.job), self.arrays, settings["feed_max_mm_s"])
+            np.minimum.at(whole, self.group, np.where(self.rapid, np.inf, joints))
         fastest = np.where(self.kept, self.feed(), whole)
         reached = self._reached(fastest)
         whole = robot_time.rounded_feeds(np.where(reached > 0.0, np.minimum(whole, reached), whole))

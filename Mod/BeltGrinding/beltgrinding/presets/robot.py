@@ -45,6 +45,14 @@ def validate(robot: Json) -> None:
             key="robot.start_joints_deg",
             count=len(robot["start_joints_deg"]),
         )
+    for name in ("home_joints_deg", "joint_acceleration_deg_s2"):
+        if len(robot["program"][name]) not in (0, JOINTS):
+            raise InputError(
+                "presets.six_angles",
+                "{key}: {count} angles; give six, or none",
+                key=f"robot.program.{name}",
+                count=len(robot["program"][name]),
+            )
     if len(robot["link_radii_mm"]) not in (0, len(LINKS)):
         raise InputError(
             "presets.link_radii",

@@ -151,6 +151,16 @@ def shortened(fact: Fact, most: int) -> Fact:
     return short
 
 
+@dataclass(frozen=True)
+class Posture:
+    """Which of the eight configurations an arm with a spherical wrist is in, as the core's RobotArm.configuration has it."""
+
+    behind: bool  # the wrist is behind axis 1
+    below: bool  # joint 3 is turned less than where the arm is stretched
+    back: bool  # the wrist lies behind the upper arm, against all angles 0
+    flipped: bool  # joint 5 is turned to less than where axes 4 and 6 are one line
+
+
 @dataclass
 class Motion:
     """One programmed target. ``pose``: 4 x 4 base_from_tcp in mm, None for a joint target."""
@@ -178,6 +188,10 @@ class Motion:
     free_roll: bool = (
         False  # the program gives the tool's axis only: a rule turns the pose about it
     )
+    # With a pose and ``joints_deg`` it is known how the arm stands there: a PTP is written as a joint motion, a path
+    # motion with the posture that its language has for it.
+    posture: Optional[Posture] = None
+    note: str = ""  # what a comment before it says
 
 
 @dataclass

@@ -121,4 +121,16 @@ struct SingularDistance {
 
 SingularDistance singular_distance(const RobotArm& arm, const Joints& q);
 
+/// Which of the eight configurations an arm with a spherical wrist is in; of others nothing is
+/// told.
+struct ArmConfiguration {
+    bool behind = false;   ///< the wrist is behind axis 1, seen along the base's x turned with it
+    bool below = false;    ///< joint 3 is turned less than where the arm is stretched
+    bool flipped = false;  ///< joint 5 is turned to less than where axes 4 and 6 are one line
+    /// The wrist lies on the side of the upper arm on which it is not at all angles 0.
+    bool back = false;
+};
+
+ArmConfiguration configuration_at(const RobotArm& arm, const Joints& q);
+
 }  // namespace beltgrinding

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from ...base.frames import to_abc
 from ...base.kinds import known
 from ..force_device import FANUC
 from ..patch.text import decimal
+from ..program import Joints, Posture
 from . import pressing
 from .frames import check_all_set, frame_number, taken_for_granted
 from .text import identifier, remarks, rounded
@@ -27,7 +29,8 @@ def text(sheet: Sheet) -> bytes:
     for frames in (sheet.bases, sheet.tools):
         check_all_set(frames, FANUC)
     left_out = [frame for frame in (sheet.bases[0], sheet.tools[0]) if frame.left_out]
-    sheet.notes += [*taken_for_granted(left_out), sheet.posture()]
+    unknown = any(step.posture is None for step in sheet.steps)
+    sheet.notes += [*taken_for_granted(left_out), *([sheet.posture()] if unknown else [])]
     rows = [f"!{one}" for comment in sheet.comments for one in remarks(comment, REMARK - 1)]
     for frame in left_out:
         rows += [f"!{one}" for one in remarks(f"{frame.what}: {frame.told}", REMARK - 1)]
@@ -45,7 +48,8 @@ def text(sheet: Sheet) -> bytes:
         stops = zone == 0.0 or k + 1 == len(sheet.steps)
         end = "FINE" if stops else f"CNT{round(100.0 * (step.share or 1.0))}"
         if step.kind == "PTP":
-            rows.append(f"J P[{step.pose + 1}] {PTP}% {'FINE' if step.zone is None else end}")
+            percent = PTP if sheet.joint_percent is None else max(1, round(sheet.joint_percent))
+            rows.append(f"J P[{step.pose + 1}] {percent}% {'FINE' if step.zone is None else end}")
             continue
         speed = f"{decimal(sheet.speed_of(step), sheet.digits.speed)}mm/sec {end}"
         if step.kind == "CIRC":
@@ -57,6 +61,7 @@ def text(sheet: Sheet) -> bytes:
     lines += ["DEFAULT_GROUP = 1,*,*,*,*;", "/MN"]
     lines += [f"{k:4d}:{row.rstrip('; ')} ;" for k, row in enumerate(rows, 1)]
     frames_of = sheet.frames_of()
+    configurations = _configurations(sheet)
     lines.append("/POS")
     for k, pose in enumerate(sheet.frames):
         base, tool = (
@@ -68,7 +73,7 @@ def text(sheet: Sheet) -> bytes:
         lines += [
             f"P[{k + 1}]{{",
             "   GP1:",
-            f"    UF : {base}, UT : {tool},    CONFIG : 'N U T, 0, 0, 0',",
+            f"    UF : {base}, UT : {tool},    CONFIG : '{configurations[k]}',",
             "    "
             + ",  ".join(f"{n} = {v:.{sheet.digits.mm}f}  mm" for n, v in zip("XYZ", at))
             + ",",
@@ -77,3 +82,24 @@ def text(sheet: Sheet) -> bytes:
             "};",
         ]
     return "\r\n".join([*lines, "/END", ""]).encode("ascii")
+
+
+def _configurations(sheet: Sheet) -> list[str]:
+    """CONFIG of each pose: the first of the language where the posture is not known."""
+    found = ["N U T, 0, 0, 0"] * len(sheet.frames)
+    for step in sheet.steps:
+        if step.posture is not None and step.joints is not None:
+            found[step.pose] = config(step.posture, step.joints)
+    return found
+
+
+def config(posture: Posture, joints: Joints) -> str:
+    """F where axis 5 is at a positive angle (flip), else N; U where the elbow is up; T where the wrist is before axis 1,
+    else B; then the whole turns of axes 1, 4 and 6 beyond half a turn."""
+    letters = (
+        "F" if joints[4] > 0.0 else "N",
+        "D" if posture.back else "U",
+        "B" if posture.behind else "T",
+    )
+    turns = (math.floor((joints[k] + 180.0) / 360.0) for k in (0, 3, 5))
+    return f"{' '.join(letters)}, {', '.join(map(str, turns))}"

@@ -10,15 +10,16 @@ from ...base.frames import to_abc
 from ...base.kinds import Floats, known
 from ..patch.text import decimal
 from ..force_device import KRL
-from ..program import ProgramError
+from ..program import Joints, Posture, ProgramError
 from .frames import check_all_set, taken_for_granted
 from . import pressing, spline
 from .text import DIGITS, ZONE_DIGITS, Digits, rounded
 
 if TYPE_CHECKING:
     from .frames import Frame
-    from .sheet import Pace, Sheet
+    from .sheet import Pace, Sheet, Step
 
+JOINT_DIGITS = 6  # of degrees
 NAME = re.compile(r"[A-Za-z]\w{0,23}$", re.ASCII)
 # A Cartesian PTP without status and turn is reached in the posture that the robot happens to have.
 FIRST = [
@@ -56,6 +57,7 @@ def text(sheet: Sheet) -> bytes:
         "BAS (#INITMOV,0 )",
         f"$APO.CDIS={decimal(sheet.blend_mm, ZONE_DIGITS)}",
         *_pace(sheet.pace),
+        *_joint_speed(sheet.joint_percent),
         ";ENDFOLD (INI)",
     ]
     blend = decimal(sheet.blend_mm, ZONE_DIGITS)
@@ -66,7 +68,7 @@ def text(sheet: Sheet) -> bytes:
     inside = rounded_before = False
     for k, step in enumerate(sheet.steps):
         head = []
-        if k == 0 and step.kind == "PTP":
+        if k == 0 and step.kind == "PTP" and step.joints is None:
             head += FIRST
         if step.note:
             head.append(f"; {step.note}")
@@ -104,7 +106,7 @@ def text(sheet: Sheet) -> bytes:
             lines.append("SPLINE")
             inside = True
         rounded_before = bool(rounds)
-        target = places[step.pose]
+        target = _target(step, places[step.pose])
         if step.kind == "CIRC":
             target = f"{places[known(step.aux)]},{target}"
         lines.append(f"{step.kind} {target}{own}{' C_DIS' if rounds else ''}")
@@ -123,6 +125,30 @@ def _pace(pace: Pace | None) -> list[str]:
     lines = [f"$ACC.CP={decimal(pace.acceleration_mm_s2 / 1000.0, 6)}"]
     lines += [f"$ACC.ORI{k}={angular}" for k in (1, 2)]
     return lines + [f"$VEL.ORI{k}={turning}" for k in (1, 2)]
+
+
+def _joint_speed(percent: float | None) -> list[str]:
+    return [] if percent is None else [f"BAS (#VEL_PTP,{max(1, round(percent))} )"]
+
+
+def _target(step: Step, pose: str) -> str:
+    """Joint angles where a PTP has them; else the pose, with status and turn where the posture is known."""
+    if step.joints is None:
+        return pose
+    if step.kind == "PTP":
+        angles = (f"A{k} {decimal(one, JOINT_DIGITS)}" for k, one in enumerate(step.joints, 1))
+        return "{" + ",".join(angles) + "}"
+    if step.posture is None:
+        return pose
+    status, turn = status_and_turn(step.posture, step.joints)
+    return f"{pose[:-1]},S {status},T {turn}}}"
+
+
+def status_and_turn(posture: Posture, joints: Joints) -> tuple[int, int]:
+    """S and T of a position. S: bit 0, the wrist is over or behind axis 1; bit 1, axis 3 is turned beyond the
+    stretched arm; bit 2, axis 5 to a negative angle. T: a bit of each axis at a negative angle."""
+    status = posture.behind + 2 * (not posture.below) + 4 * (joints[4] < 0.0)
+    return status, sum(1 << k for k, one in enumerate(joints) if one < 0.0)
 
 
 def _pose(frame: Floats, digits: Digits) -> str:

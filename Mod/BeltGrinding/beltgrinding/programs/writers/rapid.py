@@ -3,6 +3,7 @@ reference manual, RAPID instructions, functions and data types; names of at most
 
 from __future__ import annotations
 
+import math
 import re
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,7 @@ from ...base.frames import to_quaternions
 from ...base.kinds import Floats, known
 from ..patch.text import decimal
 from ..force_device import RAPID
-from ..program import ProgramError
+from ..program import Joints, Posture, ProgramError
 from ..languages.rapid.data import SPEEDS, ZONES, zone
 from .frames import undeclared
 from . import pressing
@@ -23,7 +24,8 @@ if TYPE_CHECKING:
 
 MOST = 32  # characters of an identifier
 FORCE_DIGITS = 4  # of N along an axis
-AXES = "[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]"
+EXTERNAL = "[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]"
+JOINT_DIGITS = 6  # of degrees
 NAME = re.compile(r"[A-Za-z]\w{0,31}", re.ASCII)
 TYPES = {"tool": "tooldata", "base": "wobjdata"}
 DECLARED = {"tool": "tool_", "base": "wobj_"}
@@ -58,10 +60,11 @@ def text(sheet: Sheet) -> bytes:
     if any(step.kind == "SPL" for step in sheet.steps):
         lines.append("    ! RAPID has no splines: their points are joined by lines.")
     places = [
-        f"{_target(p, q, sheet.digits)[:-1]},{AXES}]"
-        for p, q in zip(
+        f"{_target(p, q, sheet.digits)[:-1]},{configuration},{EXTERNAL}]"
+        for p, q, configuration in zip(
             rounded(sheet.positions, sheet.digits.mm).tolist(),
             rounded_quaternions(sheet.quaternions, sheet.digits.unit).tolist(),
+            _configurations(sheet),
         )
     ]
     blend = _blend(sheet.blend_mm)
@@ -86,6 +89,8 @@ def text(sheet: Sheet) -> bytes:
         if k + 1 == len(sheet.steps):
             rounds = "fine"
         move, force = MOVES[step.kind], ""
+        if step.kind == "PTP" and step.joints is not None:
+            move, target = "MoveAbsJ", _joint_target(step.joints)
         if pressed[k] == "start":
             move, force = "FCPress1LStart", _first_press(
                 known(device), step, sheet.frames[step.pose]
@@ -102,6 +107,28 @@ def text(sheet: Sheet) -> bytes:
         )
     lines += ["  ENDPROC", "ENDMODULE", ""]
     return "\r\n".join(lines).encode("ascii")
+
+
+def _joint_target(joints: Joints) -> str:
+    angles = ",".join(decimal(one, JOINT_DIGITS) for one in joints)
+    return f"[[{angles}],{EXTERNAL}]"
+
+
+def _configurations(sheet: Sheet) -> list[str]:
+    """confdata of each pose: [0,0,0,0] where the posture is not known."""
+    found = ["[0,0,0,0]"] * len(sheet.frames)
+    for step in sheet.steps:
+        if step.posture is not None and step.joints is not None:
+            found[step.pose] = "[" + ",".join(map(str, confdata(step.posture, step.joints))) + "]"
+    return found
+
+
+def confdata(posture: Posture, joints: Joints) -> tuple[int, int, int, int]:
+    """cf1, cf4, cf6: the quarter turns that axes 1, 4 and 6 are in, 0 from 0 to 90 degrees, -1 below. cfx: 4 the wrist is
+    behind axis 1, 2 it is behind the lower arm, 1 axis 5 is at a negative angle."""
+    quarters = [math.floor(joints[k] / 90.0) for k in (0, 3, 5)]
+    behind = 4 * posture.behind + 2 * posture.back + (joints[4] < 0.0)
+    return quarters[0], quarters[1], quarters[2], behind
 
 
 def _first_press(device: ForceDevice, step: Step, frame: Floats) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...base.kinds import Floats
 from ..force_device import ForceDevice
-from ..program import Fact, ProgramError
+from ..program import Fact, Joints, Posture, ProgramError
 from .frames import Frame
 from .text import DIGITS, Digits
 
@@ -29,6 +29,8 @@ class Step:
     zone: float | None = None  # mm, 0: it stops there; None: the program's blend
     share: float | None = None  # of the feed, kept through the corner; None: by the zone
     note: str = ""  # what a comment before it says
+    joints: Optional[Joints] = None  # degrees, where they are known
+    posture: Optional[Posture] = None
 
 
 class Pace(NamedTuple):
@@ -61,6 +63,7 @@ class Sheet:
     )
     device: Optional[ForceDevice] = None  # that the program sets its forces by
     pace: Optional[Pace] = None
+    joint_percent: Optional[float] = None  # speed of joint motions; None: the controller's
     notes: list[Fact] = field(default_factory=list)  # what the program takes for granted
 
     def ways(self) -> tuple[Floats, Floats]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 ACCELERATION = 1.2  # m/s2, the manual's default
 JOINT_ACCELERATION = 1.4  # rad/s2, likewise
 JOINT_SPEED = 1.05  # rad/s, likewise
+FASTEST = 3.14  # rad/s, of the joints of all models but the large ones' first two
 BLEND_SHARE = 0.4  # of the way to a neighbour; circles of neighbouring blends must not meet
 MOST = 64  # characters of a name
 
@@ -66,6 +68,8 @@ def text(sheet: Sheet) -> bytes:
     blends = _blends(sheet)
     acceleration = ACCELERATION if sheet.pace is None else sheet.pace.acceleration_mm_s2 / 1000.0
     accelerated = decimal(acceleration, 6, 1)
+    share = None if sheet.joint_percent is None else sheet.joint_percent / 100.0
+    joint_speed = JOINT_SPEED if share is None else decimal(FASTEST * share, 6, 1)
     tool = None
     for step, blend, head in zip(sheet.steps, blends, pressed):
         if step.note:
@@ -81,7 +85,9 @@ def text(sheet: Sheet) -> bytes:
         if step.kind == "PTP":
             tail = decimal(blend / 1000.0, 6, 1) if step.zone else "0.0"
             tail = "" if float(tail) == 0.0 else f", r={tail}"
-            lines.append(f"  movej({place}, a={JOINT_ACCELERATION}, v={JOINT_SPEED}{tail})")
+            if step.joints is not None:
+                place = "[" + ", ".join(f"{math.radians(one):.9f}" for one in step.joints) + "]"
+            lines.append(f"  movej({place}, a={JOINT_ACCELERATION}, v={joint_speed}{tail})")
             continue
         tail = f"a={accelerated}, v={speed}, r={decimal(blend / 1000.0, 6, 1)}"
         if step.kind == "CIRC":

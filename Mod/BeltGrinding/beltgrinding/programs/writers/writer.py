@@ -61,6 +61,7 @@ def write_program(
     digits: str = "fine",
     force_device: Device = None,
     pace: tuple[float, float, float] | None = None,
+    joint_percent: float | None = None,
 ) -> list[Fact]:
     """Writes a robot program to ``path``, whole or not at all. Raises ProgramError.
 
@@ -89,6 +90,7 @@ def write_program(
     What is written is read again then, and refused unless each motion has its force.
     pace: (acceleration along the path, mm/s2, angular acceleration, degrees/s2, speed of turning, degrees/s) that the
     program sets as far as its language can, since its feeds count on them; None: it leaves them as they are.
+    joint_percent: the speed of joint motions, percent of the greatest; None: the controller's.
 
     A motion without a pose (a joint target, a gap) becomes a comment, and the next pose is reached
     by PTP: nothing is ground on a way that is not known.
@@ -143,6 +145,7 @@ def write_program(
     if suffix != ".csv":  # which no controller follows
         sheet.form, sheet.digits, sheet.device = form, DIGITS[digits], device_of(force_device)
         sheet.pace = None if pace is None else Pace(*pace)
+        sheet.joint_percent = joint_percent
         fit_zones(sheet)
         pressed = [*settle(sheet), *not_set(sheet)]
     data = writer(sheet)
@@ -162,6 +165,11 @@ def zones_written(program: Program, name: str, form: str) -> Floats:
         file = Path(folder, name)
         write_program(file, None, program, form=form, digits="robot")
         return read_program(file).path_arrays(ANY_SPEED)["zones"]
+
+
+def check_suffix(path: Path | str) -> None:
+    """Raises ProgramError for a file that no writer is for."""
+    _writer(Path(path).suffix.lower(), Path(path))
 
 
 def _writer(suffix: str, path: Path) -> Callable[[Sheet], bytes]:
@@ -233,7 +241,7 @@ def _sheet(motions: Iterable[Motion], tool_rows: Frames, base_rows: Frames) -> S
                 motion=number,
                 speed=speed,
             )
-        kind, note = motion.kind, ""
+        kind, note = motion.kind, motion.note
         if gap:
             lines = ", ".join(str(line) for line in gap[:5]) + (", ..." if len(gap) > 5 else "")
             note = f"left out: no pose is known for line {lines}; the next one is reached by PTP"
@@ -244,6 +252,7 @@ def _sheet(motions: Iterable[Motion], tool_rows: Frames, base_rows: Frames) -> S
         if motion.zone_mm is not None and math.isfinite(motion.zone_mm):
             step.zone = max(0.0, motion.zone_mm)
         step.share = motion.corner_share
+        step.joints, step.posture = motion.joints_deg, motion.posture
         step.tool, step.base, step.note = (
             tool_rows.row(motion.tool),
             base_rows.row(motion.base),

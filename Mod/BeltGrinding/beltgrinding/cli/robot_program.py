@@ -1,0 +1,78 @@
+"""A program for the whole robot of a job."""
+
+import json
+
+from . import background, frames_options, outputs
+
+
+def add_unsafe(command):
+    """The option ``--unsafe`` of a program for the whole robot."""
+    command.add_argument(
+        "--unsafe",
+        action="store_true",
+        help="write a program for the whole robot in spite of a collision, a limit or a pose out of reach",
+    )
+
+
+def refuse_unsafe(arguments, action):
+    """Raises InputError for ``--unsafe`` without a program for the whole robot."""
+    from ..engine import InputError
+
+    if arguments.unsafe:
+        raise InputError(
+            "cli.unsafe_of_robot", "program {action}: --unsafe is robot's", action=action
+        )
+
+
+def write(arguments, files):
+    """Plans and writes the program of a job for the command line's ``program robot``."""
+    from ..base.files import cannot_be_written
+    from ..engine import InputError
+    from ..job import inputs, load as jobs
+    from ..programs.writers.writer import check_suffix
+    from ..robot_program import write as writing
+
+    if len(files) != 1 or not arguments.output:
+        raise InputError(
+            "cli.program_robot", "program robot: give a job, and by -o what file to write"
+        )
+    check_suffix(arguments.output)
+    job = jobs.load(files[0])
+    outputs.check(arguments, [arguments.output], [files[0], *inputs.files(job)])
+    whole = background.run(lambda context: writing.plan_job(job, context), quiet=True)
+    arguments.messages.print_warnings([*whole.notes, *whole.problems])
+    try:
+        notes = writing.write(
+            arguments.output,
+            job,
+            whole,
+            form=arguments.form,
+            unsafe=arguments.unsafe,
+            **frames_options.given(arguments),
+        )
+    except OSError as error:
+        raise cannot_be_written(arguments.output, error) from None
+    arguments.messages.print_written(notes)
+    print(json.dumps(writing.summary(whole), indent=2, allow_nan=False))
+
+
+def wanted(job):
+    """Whether a job has a robot and the home of its programs."""
+    from ..robot_program import whole
+
+    return whole.wanted(job)
+
+
+def in_place_of(file, job, arguments):
+    """Writes the program for the whole robot over that of the passes alone, and returns what the writer tells. Where it
+    is refused the other goes, too: it has the same collisions. Raises InputError."""
+    from ..engine import InputError
+    from ..robot_program import write as writing
+
+    whole = background.run(lambda context: writing.plan_job(job, context), quiet=True)
+    arguments.messages.print_warnings([*whole.notes, *whole.problems])
+    try:
+        return writing.write(file, job, whole, form=arguments.form, unsafe=arguments.unsafe)
+    except InputError:
+        file.unlink()
+        raise

@@ -1,0 +1,428 @@
+"""A program for the whole robot: from home by links through all passes and back.
+
+Postures and links are the core's (``ArmScene``); here they are put in a row, and looked at once more as they lie.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any, Optional
+
+import numpy as np
+
+from ..base import records
+from ..base.kinds import Context, Facts, Floats, Json, known
+from ..cell import tool_path as tool_paths
+from ..engine import InputError, core
+from ..job.poses import program_name
+from ..job.settings import Job
+from ..job.typed import typed
+from ..presets import robot as robots
+from . import scenes as scene_lists
+from .passes import Pass, least_way, split
+from .retract import retracted
+
+RESOLUTION = 0.05  # mm, of the last look
+STEP, TURN = 1.0, 0.02  # mm, rad, between places of the tool's straight ways there
+LINK_STEP = 0.5  # mm, of the search
+ROLL_STEP, LEAN_STEP, SHIFT_STEP = math.radians(10.0), math.radians(2.5), 0.25  # the last: of most
+RETRACTS = (1.0, 0.5, 2.0, 0.25, 4.0)  # times the job's, that are tried
+SLOWER = 1e-3  # relative; less is no lower feed
+
+
+@dataclass
+class Move:
+    """A motion of the program. ``joints_deg``: six angles at its end, None: not known, the arm does not get there."""
+
+    kind: str  # PTP: by joints; LIN
+    frame: Floats  # base_from_tcp at its end, mm
+    joints_deg: Optional[Floats]
+    feed: float = 0.0  # mm/s; PTP: not used
+    force: float = -1.0  # N
+    zone: float = 0.0  # mm; -1: the job's default
+    line: int = 0
+    note: str = ""
+
+
+@dataclass
+class Whole:
+    """A program for the whole robot. ``problems``: for which it must not run; ``notes``: what is to be known of it."""
+
+    moves: list[Move] = field(default_factory=list)
+    problems: Facts = field(default_factory=list)
+    notes: Facts = field(default_factory=list)
+    figures: dict[str, Any] = field(default_factory=dict)
+
+
+def wanted(job: Job | Json) -> bool:
+    """Whether a validated job has all that a program for the whole robot needs."""
+    robot = typed(job).robot
+    return robots.given(records.plain(robot)) and bool(robot.program.home_joints_deg)
+
+
+def plan(
+    job: Job | Json, index: int, shape: core.Shape | None = None, context: Context = None
+) -> Whole:
+    """The ``Whole`` of a validated job's program number ``index``. ``shape``: the design, None: it is read. Raises
+    InputError, Cancelled."""
+    from ..job.workpiece import read_design
+
+    job, context = typed(job), context or core.RunContext()
+    if not wanted(job):
+        raise InputError(
+            "robot_program.no_home",
+            "{key}: a program for the whole robot needs a robot, and where it begins: give six angles",
+            key="robot.program.home_joints_deg",
+        )
+    if shape is None and job.cell.check_collisions:
+        shape = read_design(job.design, context)
+    return Planner(job, index, shape, context).run()
+
+
+class Planner:
+    """Of a validated job's program number ``index``: its passes, and the scenes that they lie in."""
+
+    def __init__(
+        self, job: Job, index: int, shape: core.Shape | None, context: core.RunContext
+    ) -> None:
+        self.job, self.context, self.whole = job, context, Whole()
+        self.name = program_name(job, index)
+        self.settings = job.robot.program
+        path = tool_paths.tool_path(job, index, self.whole.notes)
+        self.scenes = scene_lists.of_job(job, shape, path, self.whole.notes, context)
+        self.arm = known(robots.arm_of(records.plain(job.robot)))
+        self.home = np.radians(self.settings.home_joints_deg)
+        self.given = tool_paths.motions(path)
+        self.passes = self._passes()
+        self.rows = np.concatenate([np.arange(one.first, one.last + 1) for one in self.passes])
+        self.begins = np.cumsum([0, *(one.last - one.first + 1 for one in self.passes)])
+        self.path = self._in_order()
+        self.seconds = np.diff(self.path.times(), prepend=0.0)
+        self.at = self.home
+        self.numbers = {"passes": 0, "cuts": 0, "slower": 0, "links": 0, "links_round": 0}
+        self.least_clearance = math.inf
+        self.told: set[tuple[Any, ...] | None] = set()  # of what has been said to meet
+
+    def run(self) -> Whole:
+        self._check_place(self.home, "robot.program.home_joints_deg", 0)
+        for number, safe in enumerate(self.settings.safe_joints_deg):
+            self._check_place(np.radians(safe), f"robot.program.safe_joints_deg[{number}]", 0)
+        found = self.postures(self.context.part(0.0, 0.6))
+        self._move(
+            Move("PTP", self._frame(self.home), np.degrees(self.home), note="home"), look=False
+        )
+        poses = found["poses"]
+        begins = [k for k, one in enumerate(poses) if k == 0 or one["link"]]
+        for count, (begin, end) in enumerate(zip(begins, [*begins[1:], len(poses)])):
+            self.context.report(0.6 + 0.35 * count / len(begins))
+            self._run(poses[begin:end])
+        self._link(self.home, "home")
+        self._tell(found)
+        self.context.report(1.0)
+        return self.whole
+
+    def postures(self, context: core.RunContext) -> dict[str, Any]:
+        """As ``ArmScene.postures`` gives them, of the passes in their order."""
+        return self.scenes.passes.postures(self.path, self._options(), context)
+
+    def feeds(self, context: core.RunContext) -> Floats:
+        """(poses,) mm/s at which the joints can follow each motion of the program's passes, no more than its own; inf of
+        rapid motions, and where the arm does not get."""
+        found = np.full(len(self.given["feeds"]), np.inf)
+        for pose in self.postures(context)["poses"]:
+            if pose["reached"] and not pose["link"]:
+                found[self.rows[pose["pose"]]] = self._motion(pose).feed
+        return found
+
+    def _passes(self) -> list[Pass]:
+        rapid = self.given["rapid"]
+        found, lone = split(rapid)
+        if not found:
+            raise InputError(
+                "robot_program.no_pass",
+                "{program}: no path motion follows a rapid one; there is no pass",
+                program=self.name,
+            )
+        if lone:
+            self.whole.notes.append(
+                core.Fact(
+                    "robot_program.lone_poses",
+                    "{program}: {count} rapid poses that begin no pass are left out: the links find their own way",
+                    program=self.name,
+                    count=lone,
+                )
+            )
+        if self.settings.order == "least_way":
+            home = self._frame(self.home)
+            found = [found[k] for k in least_way(self.given["frames"], found, home)]
+        return found
+
+    def _in_order(self) -> core.ToolPath:
+        rows = self.rows
+        arrays: dict[str, Any] = {
+            name: values[rows]
+            for name, values in self.given.items()
+            if isinstance(values, np.ndarray) and len(values) == len(self.given["rapid"])
+            and name not in tool_paths.CELL_FRAMES
+        }  # fmt: skip
+        rapid = np.zeros(len(rows), dtype=bool)
+        rapid[self.begins[:-1]] = True
+        rest = {name: value for name, value in self.given.items() if name not in arrays}
+        return core.ToolPath(**{**rest, **arrays, "rapid": rapid})
+
+    def _options(self) -> dict[str, Any]:
+        wheel, own = self.job.belt_machine.wheel, self.settings
+        shift = own.shift_share * wheel.width_mm
+        options: dict[str, Any] = {
+            "most": [math.radians(own.roll_deg), math.radians(own.lean_deg), shift],
+            "spacing": [ROLL_STEP, LEAN_STEP, max(SHIFT_STEP * shift, 1e-3)],
+            "wheel_radius": wheel.radius_mm,
+            "flip": math.radians(self.job.robot.flip_deg),
+            "singularity": math.radians(self.job.robot.singularity_deg),
+            "clearance": self.job.cell.clearance_mm,
+            "home": self.home,
+        }
+        if own.joint_acceleration_deg_s2:
+            options["acceleration"] = np.radians(own.joint_acceleration_deg_s2)
+        return options
+
+    def _frame(self, q: Floats) -> Floats:
+        return self.scenes.passes.base_from_tcp(q)
+
+    def _check_place(self, q: Floats, key: str, row: int) -> None:
+        """Raises InputError for a place of the user's beyond a limit, or where bodies meet."""
+        for joint, (angle, low, high) in enumerate(zip(q, self.arm.lower, self.arm.upper), 1):
+            if not low <= angle <= high:
+                raise InputError(
+                    "robot_program.place_beyond",
+                    "{key}: joint {joint} at {angle:.1f} deg is beyond its limits of {lower:.1f} to {upper:.1f} deg",
+                    key=key,
+                    joint=joint,
+                    angle=math.degrees(angle),
+                    lower=math.degrees(low),
+                    upper=math.degrees(high),
+                )
+        met = self.scenes.links.within(q, 0.0) or self.scenes.links.inside(q)
+        if met is not None:
+            raise InputError(
+                "robot_program.place_collides",
+                "{key}: {body} and {other} are in each other there; give another place",
+                key=key,
+                body=met[0],
+                other=met[1],
+            )
+
+    def _run(self, poses: list[dict[str, Any]]) -> None:
+        """A pass, or a piece of one: link, approach, its motions, retract."""
+        first, last = poses[0], poses[-1]
+        self.numbers["cuts" if first["cut"] else "passes"] += 1
+        note = f"pass {self.numbers['passes']}"
+        if first["cut"]:
+            note += ", goes on in another posture"
+            self._tell_cut(first)
+        self._tell_poses(poses)
+        reached = next((one for one in poses if one["reached"]), None)
+        if reached is None:
+            for one in poses:
+                self._move(self._motion(one), look=False)
+            return
+        above = self._above(reached)
+        self._link(reached["q"] if above is None else above[0], note)
+        feed = self.settings.retract_feed_mm_s
+        rest = poses[poses.index(reached) + (above is None) :]
+        for one in rest:
+            move = self._motion(one)
+            if one is reached:
+                move.feed, move.force, move.zone = feed, -1.0, 0.0
+            self._move(move)
+        above = self._above(last) if last["reached"] else None
+        if above is not None:
+            q, frame = above
+            self._move(Move("LIN", frame, np.degrees(q), feed, line=self._line(last)))
+
+    def _above(self, pose: Json) -> tuple[Floats, Floats] | None:
+        """(joints, frame) off the part above a pose; None: it is clear of everything, or nothing above it is."""
+        clearance = self.settings.clearance_mm
+        whole = self.scenes.links
+        inner = pose["pose"] not in self.begins and pose["pose"] + 1 not in self.begins
+        if not inner and whole.within(pose["q"], clearance) is None:
+            return None
+        for share in RETRACTS:
+            frame = retracted(self.job.cell, pose["frame"], share * self.settings.retract_mm)
+            way, gets_there = self.scenes.passes.straight_way(pose["q"], frame, STEP, TURN)
+            if not gets_there or whole.within(way[-1], clearance) is not None:
+                continue
+            if self._met(self.scenes.passes, way) is None:
+                return way[-1], frame
+        return None
+
+    def _link(self, to: Floats, note: str) -> None:
+        """Joint motions from where the arm is, by the user's safe places where no direct way is found."""
+        ways = [[to]] + [[np.radians(safe), to] for safe in self.settings.safe_joints_deg]
+        for places in ways:
+            found, begin = [], self.at
+            for place in places:
+                found.append(self._way(begin, place))
+                begin = place
+            if all(one is not None for one in found):
+                break
+        else:
+            self._problem_of_link(to, note)
+            found = [{"joints": np.stack([self.at, to]), "straight": True, "clearance": 0.0}]
+        self.numbers["links"] += 1
+        self.numbers["links_round"] += any(not known(one)["straight"] for one in found)
+        for one in found:
+            self.least_clearance = min(self.least_clearance, known(one)["clearance"])
+            for q in known(one)["joints"][1:]:
+                self._move(Move("PTP", self._frame(q), np.degrees(q), note=note), look=False)
+                note = ""
+        self.at = to
+
+    def _way(self, begin: Floats, end: Floats) -> dict[str, Any] | None:
+        found: dict[str, Any] | None = self.scenes.links.link(
+            begin, end, self.settings.clearance_mm, LINK_STEP, self.settings.seed,
+            context=self.context.part(0.0, 0.0),
+        )  # fmt: skip
+        return found
+
+    def _problem_of_link(self, to: Floats, note: str) -> None:
+        clearance = self.settings.clearance_mm / 8.0
+        met = self.scenes.links.within(self.at, clearance) or self.scenes.links.within(
+            to, clearance
+        )
+        if met is None:
+            met = self.scenes.links.on_way(self.at, to, clearance, RESOLUTION)
+        if met is None:  # cannot be: the straight way is tried first
+            met = ("", "", 0.0)
+        self.whole.problems.append(
+            core.Fact(
+                "robot_program.no_link",
+                "{program}: no way is found to {place}: {body} and {other} are in the way; give safe places "
+                "(robot.program.safe_joints_deg), or make room",
+                program=self.name,
+                place=note,
+                body=met[0],
+                other=met[1],
+            )
+        )
+
+    def _move(self, move: Move, look: bool = True) -> None:
+        """Adds a motion; ``look``: it is looked at whether it is free."""
+        if move.joints_deg is not None:
+            q = np.radians(move.joints_deg)
+            if look and move.kind == "LIN":
+                self._look(move, q)
+            self.at = q
+        self.whole.moves.append(move)
+
+    def _look(self, move: Move, q: Floats) -> None:
+        way, gets_there = self.scenes.passes.straight_way(self.at, move.frame, STEP, TURN)
+        if not gets_there or np.abs(way[-1] - q).max() > 1e-6:
+            self._tell_broken(move)
+            return
+        met = self._met(self.scenes.passes, way)
+        known_of = None if met is None else (*met[:2], self.numbers["passes"])
+        if met is not None and known_of not in self.told:  # once a pass
+            self.told.add(known_of)
+            self.whole.problems.append(
+                core.Fact(
+                    "robot_program.meets",
+                    "{program}: {body} and {other} run into each other on the way to {place}",
+                    program=self.name,
+                    body=met[0],
+                    other=met[1],
+                    place=self._place(move.line),
+                )
+            )
+
+    @staticmethod
+    def _met(scene: core.ArmScene, way: Floats) -> tuple[Any, ...] | None:
+        for a, b in zip(way[:-1], way[1:]):
+            met: tuple[Any, ...] | None = scene.on_way(a, b, 0.0, RESOLUTION)
+            if met is not None:
+                return met
+        return None
+
+    def _line(self, pose: Json) -> int:
+        return int(self.given["lines"][self.rows[pose["pose"]]])
+
+    def _place(self, line: int) -> str:
+        number = max(self.numbers["passes"], 1)
+        return f"line {line} (pass {number})" if line else f"a pose of pass {number}"
+
+    def _motion(self, pose: Json) -> Move:
+        row = self.rows[pose["pose"]]
+        feed, before = float(self.given["feeds"][row]), float(self.seconds[pose["pose"]])
+        if not pose["link"] and 0.0 < before * (1.0 + SLOWER) < pose["duration"]:
+            feed *= before / pose["duration"]
+            self.numbers["slower"] += 1
+        joints = np.degrees(pose["q"]) if pose["reached"] else None
+        force, zone = float(self.given["forces"][row]), float(self.given["zones"][row])
+        return Move("LIN", pose["frame"], joints, feed, force, zone, self._line(pose))
+
+    def _tell_cut(self, pose: Json) -> None:
+        fact = core.Fact(
+            "robot_program.cut",
+            "{program}: pass {number} is cut at {place}: the arm cannot do it in one posture",
+            program=self.name,
+            number=self.numbers["passes"],
+            place=self._place(self._line(pose)),
+        )
+        self.whole.notes.append(fact)
+        if pose["torn"]:
+            self._tell_broken(self._motion(pose))
+
+    def _tell_broken(self, move: Move) -> None:
+        self.whole.problems.append(
+            core.Fact(
+                "robot_program.broken",
+                "{program}: the arm cannot go straight to {place}: a joint would jump or pass its limit on the way",
+                program=self.name,
+                place=self._place(move.line),
+            )
+        )
+
+    def _tell_poses(self, poses: list[dict[str, Any]]) -> None:
+        far = [one for one in poses if not one["reached"] and one["within_limits"]]
+        if far:
+            self.whole.problems.append(
+                core.Fact(
+                    "robot_program.out_of_reach",
+                    "{program}: {count} poses, first {place}, are out of the robot's reach",
+                    program=self.name,
+                    count=len(far),
+                    place=self._place(self._line(far[0])),
+                )
+            )
+        beyond = [one for one in poses if not one["reached"] and not one["within_limits"]]
+        if beyond:
+            self.whole.problems.append(
+                core.Fact(
+                    "robot_program.beyond_limits",
+                    "{program}: {count} poses, first {place}, are reached beyond the joints' limits only",
+                    program=self.name,
+                    count=len(beyond),
+                    place=self._place(self._line(beyond[0])),
+                )
+            )
+
+    def _tell(self, found: Json) -> None:
+        if self.numbers["slower"]:
+            self.whole.notes.append(
+                core.Fact(
+                    "robot_program.slower",
+                    "{program}: at {count} motions the joints' speeds or accelerations lower the feed",
+                    program=self.name,
+                    count=self.numbers["slower"],
+                )
+            )
+        joints = np.stack([m.joints_deg for m in self.whole.moves if m.joints_deg is not None])
+        lower, upper = np.degrees(self.arm.lower), np.degrees(self.arm.upper)
+        self.whole.figures = {
+            **self.numbers,
+            "motions": len(self.whole.moves),
+            "least_limit_margin_deg": float(np.minimum(joints - lower, upper - joints).min()),
+            "link_clearance_mm": None if math.isinf(self.least_clearance) else self.least_clearance,
+            "cost_s": found["cost"],
+        }

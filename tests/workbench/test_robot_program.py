@@ -1,0 +1,336 @@
+"""Programs for the whole robot: from home to home, free, within limits, read again; checked by KDL."""
+
+import json
+import math
+import re
+import subprocess
+
+import numpy as np
+import pytest
+import PyKDL
+from test_collision import brep
+from test_raster import X, job_of, plate
+
+from beltgrinding.base import frames
+from beltgrinding.engine import InputError
+from beltgrinding.job import load as jobs, poses
+from beltgrinding.planning import commands, rounds
+from beltgrinding.presets import library
+from beltgrinding.programs.registry import read_program
+from beltgrinding.programs.writers import fanuc, krl, rapid
+from beltgrinding.programs.program import Posture
+from beltgrinding.raster import raster_path as raster
+from beltgrinding.robot_program import passes, scenes, whole as wholes, write as writing
+from beltgrinding.job.typed import typed
+from support.freecad import ROOT
+
+HOME = [60, -90, 90, 0, 60, 0]  # to the side: the post stands between it and the plate
+POST = {"name": "post", "frame": "base", "brep": brep([-70, -290, -350], [-10, -230, 350])}
+TOOL = {"position_mm": [0, 0, 150]}
+KUKA = {
+    "preset": "kuka_kr6_r900",
+    "base_from_robot": {"position_mm": [-450, 30, -350]},
+    "flange_from_tcp": TOOL,
+}
+UR = {"preset": "ur10e", "base_from_robot": {"position_mm": [-550, 30, -300]}, "flange_from_tcp": TOOL}  # fmt: skip
+
+
+def cell(robot=KUKA, bodies=(), laid=None, **program):
+    """A validated job: a plate under three passes of a wheel in the robot's hand."""
+    wanted = {**robot, "program": {"home_joints_deg": HOME, **program}}
+    job = job_of(plate(), robot=wanted, cell={"bodies": list(bodies)})
+    laid = laid or raster.raster(job, {**X, "step_over_mm": 20, "feed_mm_s": 40})
+    listed = poses.list_poses(laid)
+    return {**job, "programs": [{"name": "raster", "poses": listed, "unresolved": 0}]}
+
+
+@pytest.fixture(scope="module")
+def laid():
+    return raster.raster(job_of(plate()), {**X, "step_over_mm": 20, "feed_mm_s": 40})
+
+
+def chain(preset, tool):
+    """KDL's chain of a preset, metres for millimetres left out: it knows no unit."""
+    made = PyKDL.Chain()
+    model = library.find("robots", preset)["model"]
+    for joint in model["joints"]:
+        at, axis = PyKDL.Vector(*joint["origin_mm"]), PyKDL.Vector(*joint["axis"])
+        made.addSegment(
+            PyKDL.Segment(PyKDL.Joint("", at, axis, PyKDL.Joint.RotAxis), PyKDL.Frame(at))
+        )
+    flange = frames.from_data(model.get("joint6_from_flange")) @ tool
+    turn = PyKDL.Rotation(*flange[:3, :3].ravel().tolist())
+    end = PyKDL.Frame(turn, PyKDL.Vector(*flange[:3, 3].tolist()))
+    made.addSegment(PyKDL.Segment(PyKDL.Joint(PyKDL.Joint.Fixed), end))
+    return made
+
+
+def forward(of, joints_deg):
+    q = PyKDL.JntArray(6)
+    for k, angle in enumerate(joints_deg):
+        q[k] = math.radians(angle)
+    found = PyKDL.Frame()
+    PyKDL.ChainFkSolverPos_recursive(of).JntToCart(q, found)
+    frame = np.eye(4)
+    frame[:3, :3] = [[found.M[i, k] for k in range(3)] for i in range(3)]
+    frame[:3, 3] = list(found.p)
+    return frame
+
+
+def numbers(text, names):
+    return [float(re.search(rf"[{{,]{n} ([-+.\dE]+)", text)[1]) for n in names]
+
+
+def finer(job, whole):
+    """No body meets another at places ten times as close as the program was planned by: 0.1 mm and 0.1 degrees."""
+    job = typed(job)
+    from beltgrinding.cell import tool_path
+    from beltgrinding.job.workpiece import read_design
+
+    path = tool_path.tool_path(job, 0, [])
+    of = scenes.of_job(job, read_design(job.design), path, [], None)
+    at = None
+    for move in whole.moves:
+        q = np.radians(move.joints_deg)
+        if at is not None and move.kind == "PTP":
+            count = max(1, math.ceil(np.degrees(np.abs(q - at)).max() / 0.1))
+            for k in range(count + 1):
+                assert of.links.within(at + (q - at) * k / count, 0.0) is None
+        elif at is not None:
+            way, gets_there = of.passes.straight_way(at, move.frame, 0.1, 0.002)
+            assert gets_there and np.abs(way[-1] - q).max() < 1e-6
+            assert all(of.passes.within(one, 0.0) is None for one in way[::4])
+        at = q
+
+
+def test_a_program_goes_from_home_to_home_and_kdl_agrees(laid, tmp_path):
+    job, file = cell(laid=laid, bodies=[POST]), tmp_path / "whole.src"
+    whole = writing.plan_job(job)
+    assert not whole.problems and whole.figures["passes"] == len(laid["passes"])
+    assert whole.figures["links_round"] >= 1  # the post stands in the way
+    assert whole.figures["link_clearance_mm"] == pytest.approx(5.0)
+    writing.write(file, job, whole)
+    text = file.read_text()
+    motions = re.findall(r"^(PTP|LIN) (\{.*\})", text, re.MULTILINE)
+    assert len(motions) == len(whole.moves)
+    for kind, target in (motions[0], motions[-1]):
+        assert kind == "PTP" and numbers(target, [f"A{k}" for k in range(1, 7)]) == HOME
+    assert [text.count(f"; pass {k}\n") for k in range(1, len(laid["passes"]) + 1)] == [1] * len(
+        laid["passes"]
+    )
+    tool, base = (
+        frames.from_abc(*np.split(np.array(numbers(re.search(rf"^\{v}=(.*)", text, re.M)[1].replace("FRAME: ", ""), "XYZABC")), 2))
+        for v in ("$TOOL", "$BASE")
+    )  # fmt: skip
+    assert tool[:3, 3] == pytest.approx([0, 0, 150]) and base[:3, 3] == pytest.approx(
+        [450, -30, 350]
+    )
+    of = chain("kuka_kr6_r900", tool)
+    for move, (kind, target) in zip(whole.moves, motions):
+        if kind == "PTP":
+            joints = numbers(target, [f"A{k}" for k in range(1, 7)])
+            assert joints == pytest.approx(move.joints_deg, abs=1e-5)
+            continue
+        values = np.array(numbers(target, "XYZABC"))
+        written = base @ frames.from_abc(values[:3], values[3:])
+        assert np.abs(forward(of, move.joints_deg) - written).max() < 1e-4
+        status, turn = (int(one) for one in numbers(target, "ST"))
+        assert turn == sum(2**k for k, one in enumerate(move.joints_deg) if one < 0)
+        assert bool(status & 4) == (move.joints_deg[4] < 0)
+        assert not status & 1  # the wrist is before axis 1
+        assert bool(status & 2) == (move.joints_deg[2] > math.degrees(math.atan2(35, 420)))
+    again = writing.joints_of_file(file, job)
+    wanted = np.stack([move.joints_deg for move in whole.moves])
+    assert np.abs(again - wanted).max() < 1e-3
+    finer(job, whole)
+
+
+def test_the_same_seed_plans_the_same_program(laid):
+    job = cell(laid=laid, bodies=[POST])
+    moves = [writing.plan_job(job).moves for _ in range(2)]
+    for one, other in zip(*moves, strict=True):
+        assert one.kind == other.kind and (one.frame == other.frame).all()
+        assert (one.joints_deg == other.joints_deg).all()
+
+
+ABB = {**KUKA, "preset": "abb_irb1200_5_90"}
+FANUC = {**KUKA, "preset": "fanuc_m20ia", "base_from_robot": {"position_mm": [-900, 30, -400]}}
+
+
+@pytest.mark.parametrize(
+    "name, robot, home",
+    [
+        ("whole.mod", ABB, [60, 0, 0, 0, 60, 0]),
+        ("whole.script", KUKA, HOME),
+        ("whole.ls", FANUC, [60, 0, 0, 0, -60, 0]),
+        ("whole.jbi", KUKA, HOME),
+    ],
+)
+def test_other_languages_have_their_joints_and_configurations(name, robot, home, laid, tmp_path):
+    job, file = cell(robot, laid=laid, home_joints_deg=home), tmp_path / name
+    whole = writing.plan_job(job)
+    assert not whole.problems
+    frame = {"tools": "1", "bases": "1"} if name.endswith(("ls", "jbi")) else {}
+    writing.write(file, job, whole, **frame)
+    text = file.read_text()
+    if name == "whole.mod":
+        assert text.count("MoveAbsJ [[") == sum(move.kind == "PTP" for move in whole.moves)
+        linear = [m for m in whole.moves if m.kind == "LIN"]
+        written = re.findall(r"MoveL .*?\],\[([-\d,]+)\],\[9", text)
+        assert len(written) == len(linear)
+        for move, found in zip(linear, written):
+            cf = [math.floor(move.joints_deg[k] / 90) for k in (0, 3, 5)]
+            # Before axis 1, before the lower arm.
+            assert [int(one) for one in found.split(",")] == [*cf, int(move.joints_deg[4] < 0)]
+    if name == "whole.script":
+        assert text.count("movej([") == sum(move.kind == "PTP" for move in whole.moves)
+    if name.endswith((".mod", ".script")):
+        wanted = np.stack([move.joints_deg for move in whole.moves])
+        assert np.abs(writing.joints_of_file(file, job) - wanted).max() < 1e-3
+    if name == "whole.ls":
+        assert set(re.findall("CONFIG : '(. . .),", text)) == {"N U T"}
+        turns = re.findall("CONFIG : '. . ., (.*)'", text)
+        assert [int(one.split(",")[2]) for one in turns] == [
+            math.floor((move.joints_deg[5] + 180) / 360) for move in whole.moves
+        ]
+    assert len(read_program(file).motions) == len(whole.moves)
+
+
+def test_configurations_in_the_languages_words():
+    front = Posture(behind=False, below=False, back=False, flipped=False)
+    assert krl.status_and_turn(front, (1, -1, 1, -1, 1, 1)) == (2, 10)
+    assert krl.status_and_turn(Posture(True, True, True, True), (1, 1, 1, 1, -1, 1)) == (5, 16)
+    assert rapid.confdata(front, (10, 0, 0, -10, 5, 100)) == (0, -1, 1, 0)
+    assert rapid.confdata(Posture(True, True, True, True), (-100, 0, 0, 190, -5, -190)) == (
+        -2,
+        2,
+        -3,
+        7,
+    )
+    assert fanuc.config(front, (0, 0, 0, 200, -5, -200)) == "N U T, 0, 1, -1"
+
+
+def test_arms_of_universal_robots_are_planned_too(laid, tmp_path):
+    job = cell(UR, laid=laid, home_joints_deg=[0, -90, -90, -90, 90, 0])
+    whole = writing.plan_job(job)
+    assert not whole.problems
+    file = tmp_path / "whole.script"
+    writing.write(file, job, whole)
+    wanted = np.stack([move.joints_deg for move in whole.moves])
+    assert np.abs(writing.joints_of_file(file, job) - wanted).max() < 1e-3
+
+
+def run(*arguments):
+    return subprocess.run(
+        [ROOT / "tools" / "beltgrind", "program", "robot", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+    )
+
+
+def test_what_collides_or_is_out_of_reach_is_not_written(laid, tmp_path):
+    block = {"name": "block", "frame": "part", "brep": brep([45, 0, 20], [55, 60, 120])}
+    given = tmp_path / "job.json"
+    given.write_text(json.dumps(jobs_plain(cell(laid=laid, bodies=[block]))))
+    file = tmp_path / "whole.src"
+    done = run(given, "-o", file)
+    assert done.returncode == 2 and not file.exists()
+    assert "wheel and block" in done.stderr or "block and wheel" in done.stderr
+    assert "pass 1" in done.stderr and "--unsafe" in done.stderr
+    done = run(given, "-o", file, "--unsafe")
+    assert done.returncode == 0 and "UNSAFE" in file.read_text()
+    far = {**KUKA, "base_from_robot": {"position_mm": [-1450, 30, -350]}}
+    whole = writing.plan_job(cell(far, laid=laid))
+    assert {fact.code for fact in whole.problems} == {"robot_program.out_of_reach"}
+    with pytest.raises(InputError, match="out of the robot's reach"):
+        writing.write(tmp_path / "far.src", cell(far, laid=laid), whole)
+    assert not (tmp_path / "far.src").exists()
+
+
+def jobs_plain(job):
+    """What a job's file has of a validated job."""
+    keys = ("design", "robot", "cell", "programs", "belt_machine")
+    return {key: job[key] for key in keys}
+
+
+def test_a_home_that_cannot_be_gets_one_line(laid):
+    wall = {"name": "wall", "frame": "base", "brep": brep([-200, -300, 0], [-190, 300, 900])}
+    with pytest.raises(InputError, match="home_joints_deg: .*wall.* are in each other"):
+        writing.plan_job(cell(laid=laid, bodies=[wall], home_joints_deg=[0, -20, 20, 0, 60, 0]))
+    with pytest.raises(InputError, match="joint 2 at 80.0 deg is beyond its limits"):
+        writing.plan_job(cell(laid=laid, home_joints_deg=[0, 80, 90, 0, 60, 0]))
+    with pytest.raises(InputError, match="needs a robot, and where it begins"):
+        writing.plan_job(cell(laid=laid, home_joints_deg=[]))
+    with pytest.raises(InputError, match="five|5 angles"):
+        jobs.validate({**jobs_plain(cell(laid=laid)), "robot": {**KUKA, "program": {"home_joints_deg": [0] * 5}}})  # fmt: skip
+
+
+def test_joints_accelerations_lower_feeds(laid):
+    free = writing.plan_job(cell(laid=laid))
+    slow = writing.plan_job(cell(laid=laid, joint_acceleration_deg_s2=[30] * 6))
+    assert free.figures["slower"] == 0 and slow.figures["slower"] > 0
+    feeds = [[m.feed for m in one.moves if m.kind == "LIN"] for one in (free, slow)]
+    assert len(feeds[0]) == len(feeds[1])
+    assert all(b <= a * (1 + 1e-9) for a, b in zip(*feeds)) and min(feeds[1]) < min(feeds[0])
+
+
+def test_plans_keep_to_what_the_joints_can_follow(laid):
+    settings = rounds.validate({"feed_max_mm_s": 400})
+    ranges = []
+    for own in ({}, {"joint_acceleration_deg_s2": [20] * 6}):
+        job, wanted = rounds.in_time(cell(laid=laid, **own), settings)
+        ranges.append(commands.Commands(job, wanted).feed_range[1])
+    assert (ranges[1] <= ranges[0] + 1e-9).all() and (ranges[1] < 0.8 * ranges[0]).any()
+
+
+def test_passes_in_the_order_of_the_least_way():
+    at = [40, 0, 30, 10, 20]  # mm, where passes of 100 mm lie side by side
+    made = np.tile(np.eye(4), (2 * len(at), 1, 1))
+    for k, y in enumerate(at):
+        made[2 * k : 2 * k + 2, 1, 3] = y
+        made[2 * k, 0, 3], made[2 * k + 1, 0, 3] = (0, 100) if (y // 10) % 2 == 0 else (100, 0)
+    rapid = np.tile([True, False], len(at))
+    found, lone = passes.split(rapid)
+    assert lone == 0 and [tuple(one) for one in found] == [(0, 1), (2, 3), (4, 5), (6, 7), (8, 9)]
+    home = np.eye(4)
+    home[1, 3] = -10
+    assert [at[k] for k in passes.least_way(made, found, home)] == [0, 10, 20, 30, 40]
+    assert passes.split(np.array([True, True, False, True])) == ([passes.Pass(1, 2)], 2)
+
+
+def test_two_opt_finds_what_the_nearest_misses():
+    gained = []
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        made = np.tile(np.eye(4), (24, 1, 1))
+        made[:, :2, 3] = np.repeat(rng.uniform(0, 1000, (12, 2)), 2, axis=0)
+        found, _ = passes.split(np.tile([True, False], 12))
+        order = passes.least_way(made, found, np.eye(4))
+        assert sorted(order) == list(range(12))
+
+        def way(numbers):
+            at = [np.zeros(3), *(made[2 * k, :3, 3] for k in numbers), np.zeros(3)]
+            return sum(np.linalg.norm(b - a) for a, b in zip(at, at[1:]))
+
+        greedy, left, here = [], set(range(12)), np.zeros(3)
+        while left:
+            greedy.append(min(left, key=lambda k: np.linalg.norm(made[2 * k, :3, 3] - here)))
+            here = made[2 * greedy[-1], :3, 3]
+            left.remove(greedy[-1])
+        gained.append(way(greedy) - way(order))
+    assert min(gained) > -1e-6 and max(gained) > 10.0
+
+
+def test_roll_is_used_for_the_arms_sake(laid):
+    held = writing.plan_job(cell(laid=laid))
+    free = writing.plan_job(cell(laid=laid, roll_deg=30))
+    costs = [sum(one.figures["cost_s"].values()) for one in (held, free)]
+    assert costs[1] < costs[0]
+    # The wheel's axis stays where it is: its middle, 40 mm behind the contact, has not moved.
+    count = 0
+    for a, b in zip((m for m in held.moves if m.kind == "LIN"), (m for m in free.moves if m.kind == "LIN")):  # fmt: skip
+        centres = [one.frame[:3, 3] - 40.0 * one.frame[:3, 2] for one in (a, b)]
+        assert centres[0] == pytest.approx(centres[1], abs=1e-6)
+        assert a.frame[:3, 1] == pytest.approx(b.frame[:3, 1], abs=1e-9)
+        count += np.abs(a.frame[:3, 2] - b.frame[:3, 2]).max() > 1e-3
+    assert count

@@ -65,7 +65,6 @@ class MotionPlan {
         Vec3 turn_begin = Vec3::Zero(), turn_end = Vec3::Zero();
     };
 
-  private:
     /// The motion to a pose; its way is `length`, of which `before` and `after` lie in corners.
     struct Motion {
         double length = 0.0;       ///< mm; rad in a pure rotation; 0: there is no motion
@@ -80,6 +79,8 @@ class MotionPlan {
         bool curved = false;       ///< on a curve at one end at least
         Bow bow{};                 ///< of a curved one
     };
+
+  private:
     struct Place {
         std::size_t stretch;
         double length;

@@ -87,9 +87,10 @@ double zone_at(const PathPose& pose, bool positioning, const Way& before, const 
 }
 
 /// The tangent where motions pass into each other on a curve, less that of the motion before
-/// (`at_end`) or of the one after: their mean, each weighted by the other's length.
+/// (`at_end`) or of the one after: their mean, each weighted by its own length, so that beside a
+/// short motion that turns sharply a long one does not swing out.
 void bend_between(const Way& before, const Way& after, MotionPlan::Bow& bow, bool at_end) {
-    const double weight = before.length / (before.length + after.length);
+    const double weight = after.length / (before.length + after.length);
     const Vec3 way = after.direction - before.direction, turn = after.turn - before.turn;
     if (at_end) {
         bow.end = weight * way;

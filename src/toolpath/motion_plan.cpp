@@ -11,9 +11,9 @@ namespace beltgrinding {
 namespace {
 
 // Shorter and smaller is the rounding of files and matrices, no motion.
-constexpr double kStillTravel = 1e-9;    // mm
-constexpr double kStillAngle = 1e-9;     // rad
-constexpr double kLeastZone = 1e-6;      // mm, of a corner that keeps a share of the feed
+constexpr double kStillTravel = 1e-9;     // mm
+constexpr double kStillAngle = 1e-9;      // rad
+constexpr double kLeastZone = 1e-6;       // mm, of a corner that keeps a share of the feed
 constexpr std::size_t kCurveParts = 160;  // of a curved motion, each with limits of its own
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
@@ -25,6 +25,7 @@ struct Way {
     double feed = 0.0;   // as programmed
     double speed = 0.0;  // no more than that of turning lets it
     double acceleration = 0.0;
+    bool turning = false;  // a pure rotation
 };
 
 Way way_of(const PathPose& from, const PathPose& to, const TimeLaw& law, double length,
@@ -41,6 +42,7 @@ Way way_of(const PathPose& from, const PathPose& to, const TimeLaw& law, double 
     }
     const double rate = way.turn.norm();  // rad per unit of length
     way.length = length;
+    way.turning = turning;
     way.feed = turning ? kFar : to.feed;
     way.speed = std::min(way.feed, rate > 0.0 ? law.rotation_speed / rate : kFar);
     way.acceleration = std::min(turning ? kFar : law.acceleration,
@@ -85,9 +87,10 @@ double zone_at(const PathPose& pose, bool positioning, const Way& before, const 
 }
 
 /// The tangent where motions pass into each other on a curve, less that of the motion before
-/// (`at_end`) or of the one after: their mean, each weighted by the other's length.
+/// (`at_end`) or of the one after: their mean, each weighted by its own length, so that beside a
+/// short motion that turns sharply a long one does not swing out.
 void bend_between(const Way& before, const Way& after, MotionPlan::Bow& bow, bool at_end) {
-    const double weight = before.length / (before.length + after.length);
+    const double weight = after.length / (before.length + after.length);
     const Vec3 way = after.direction - before.direction, turn = after.turn - before.turn;
     if (at_end) {
         bow.end = weight * way;
@@ -153,6 +156,65 @@ std::size_t add_curve(const Way& way, const MotionPlan::Bow& bow, const TimeLaw&
     return kCurveParts;
 }
 
+/// How a motion passes into the next one: `way` into `next`, at the poses from `first` to before
+/// `last`.
+Corner corner_at(const std::vector<PathPose>& poses, std::size_t first, std::size_t last,
+                 const Way& way, const Way& next, const TimeLaw& law) {
+    Corner corner{kFar};
+    // Of poses that are programmed twice the smallest zone counts.
+    for (std::size_t i = first; i < last; ++i) {
+        const bool positioning = poses[i].rapid || poses[i + 1].rapid;
+        corner.zone = std::min(corner.zone, zone_at(poses[i], positioning, way, next, law));
+    }
+    const double half = 0.5 * std::min(way.length, next.length);
+    if (way.turning != next.turning) corner.zone = 0.0;
+    if (way.turning && corner.zone > 0.0) corner.zone = half;
+    corner.curve = corner.zone == kFar;
+    corner.zone = std::min(corner.zone, half);
+    if (corner.zone > 0.0 && !corner.curve) {
+        corner.speed = corner_speed(way, next, corner.zone, law);
+    }
+    return corner;
+}
+
+/// The corners at the ends of the motions to the poses `moving`.
+std::vector<Corner> corners_of(const std::vector<PathPose>& poses,
+                               const std::vector<std::size_t>& moving, const std::vector<Way>& ways,
+                               const TimeLaw& law) {
+    std::vector<Corner> corners(moving.size());
+    for (std::size_t k = 0; k + 1 < moving.size(); ++k) {
+        corners[k] =
+            corner_at(poses, moving[k], moving[k + 1], ways[moving[k]], ways[moving[k + 1]], law);
+    }
+    for (std::size_t k = 1; k < corners.size(); ++k) {  // the ends of curves
+        if (corners[k - 1].curve && !corners[k].curve) corners[k] = {};
+        if (corners[k].curve && !corners[k - 1].curve) corners[k - 1] = {};
+    }
+    return corners;
+}
+
+void add_straight(MotionPlan::Motion& motion, const Way& way, const Corner& before,
+                  const Corner& after, std::vector<SpeedLimit>& limits) {
+    motion.before = before.stops() ? 0.0 : before.zone;
+    motion.after = after.stops() ? 0.0 : after.zone;
+    motion.parts = 1 + (motion.before > 0.0) + (motion.after > 0.0);
+    const auto add = [&](double length, double speed) {
+        limits.push_back({length, std::min(speed, way.speed), way.acceleration, false});
+    };
+    if (motion.before > 0.0) add(motion.before, before.speed);
+    add(std::max(0.0, motion.length - motion.before - motion.after), way.speed);
+    if (motion.after > 0.0) add(motion.after, after.speed);
+}
+
+void add_curved(MotionPlan::Motion& motion, const std::vector<Way>& ways, std::size_t pose,
+                const Corner& before, const Corner& after, const TimeLaw& law,
+                std::vector<SpeedLimit>& limits) {
+    motion.curved = true;
+    if (before.curve) bend_between(ways[motion.previous], ways[pose], motion.bow, false);
+    if (after.curve) bend_between(ways[pose], ways[motion.next], motion.bow, true);
+    motion.parts = add_curve(ways[pose], motion.bow, law, limits);
+}
+
 /// A straight motion's frame at the share t of its way, moved onto its curve.
 Frame bowed(Frame frame, const MotionPlan::Bow& bow, double length, double t) {
     const double rise = ((t - 2.0) * t + 1.0) * t * length, fall = (t - 1.0) * t * t * length;
@@ -205,54 +267,19 @@ MotionPlan::MotionPlan(const std::vector<PathPose>& poses, const TimeLaw& law)
         moving.push_back(i);
     }
 
-    std::vector<Corner> corners(moving.size());  // at the motions' ends
-    for (std::size_t k = 0; k + 1 < moving.size(); ++k) {
-        // Of poses that are programmed twice the smallest zone counts.
-        Corner corner{kFar};
-        const Way &way = ways[moving[k]], &next = ways[moving[k + 1]];
-        for (std::size_t i = moving[k]; i < moving[k + 1]; ++i) {
-            const bool positioning = poses[i].rapid || poses[i + 1].rapid;
-            corner.zone = std::min(corner.zone, zone_at(poses[i], positioning, way, next, law));
-        }
-        const Motion &before = motions_[moving[k]], &after = motions_[moving[k + 1]];
-        const double half = 0.5 * std::min(before.length, after.length);
-        if (before.turning != after.turning) corner.zone = 0.0;
-        if (before.turning && corner.zone > 0.0) corner.zone = half;
-        corner.curve = corner.zone == kFar;
-        corner.zone = std::min(corner.zone, half);
-        if (corner.zone > 0.0 && !corner.curve) {
-            corner.speed = corner_speed(way, next, corner.zone, law);
-        }
-        corners[k] = corner;
-    }
-    for (std::size_t k = 1; k < corners.size(); ++k) {
-        if (corners[k - 1].curve && !corners[k].curve) corners[k] = {};
-        if (corners[k].curve && !corners[k - 1].curve) corners[k - 1] = {};
-    }
+    const std::vector<Corner> corners = corners_of(poses, moving, ways, law);
     std::vector<SpeedLimit> limits;
     limits.reserve(3 * moving.size());
     for (std::size_t k = 0; k < moving.size(); ++k) {
         const Corner before = k > 0 ? corners[k - 1] : Corner{};
         Motion& motion = motions_[moving[k]];
-        const Way& way = ways[moving[k]];
         motion.stretch = limits.size();
         if (k > 0) motion.previous = moving[k - 1];
         if (k + 1 < moving.size()) motion.next = moving[k + 1];
         if (before.curve || corners[k].curve) {
-            motion.curved = true;
-            if (before.curve) bend_between(ways[motion.previous], way, motion.bow, false);
-            if (corners[k].curve) bend_between(way, ways[motion.next], motion.bow, true);
-            motion.parts = add_curve(way, motion.bow, law, limits);
+            add_curved(motion, ways, moving[k], before, corners[k], law, limits);
         } else {
-            motion.before = before.stops() ? 0.0 : before.zone;
-            motion.after = corners[k].stops() ? 0.0 : corners[k].zone;
-            motion.parts = 1 + (motion.before > 0.0) + (motion.after > 0.0);
-            const auto add = [&](double length, double speed) {
-                limits.push_back({length, std::min(speed, way.speed), way.acceleration, false});
-            };
-            if (motion.before > 0.0) add(motion.before, before.speed);
-            add(std::max(0.0, motion.length - motion.before - motion.after), way.speed);
-            if (motion.after > 0.0) add(motion.after, corners[k].speed);
+            add_straight(motion, ways[moving[k]], before, corners[k], limits);
         }
         limits.back().stop = corners[k].stops();
     }

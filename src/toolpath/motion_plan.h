@@ -32,11 +32,11 @@ struct ZoneCode {
 /// A corner that keeps a share of the feed has the zone that its speed takes by the same formula.
 ///
 /// Through a pose on a curve the robot passes without a corner: each motion beside it is a cubic of
-/// Hermite, for place and rotation vector, with the tangent at the pose of Bessel (Farin, Curves
-/// and Surfaces for CAGD, 5th edition, 2002, section 9.8): the mean of both directions, each
-/// weighted by the other motion's length. The limits hold in each of up to kCurveParts parts of a
-/// motion. A motion has no rounded corner at its other end: the robot stops there, as controllers
-/// do at a spline's ends.
+/// Hermite, for place and rotation vector (Farin, Curves and Surfaces for CAGD, 5th edition, 2002,
+/// section 7.5). The tangent at the pose is the mean of both directions, each weighted by its own
+/// motion's length: no motion swings further out than the shorter one beside it lets it. The limits
+/// hold in each of up to kCurveParts parts of a motion. A motion has no rounded corner at its other
+/// end: the robot stops there, as controllers do at a spline's ends.
 ///
 /// At zone 0, and between a motion and a pure rotation, the robot stands still. A pose of unknown
 /// zone beside a rapid motion has zone 0.
@@ -65,7 +65,6 @@ class MotionPlan {
         Vec3 turn_begin = Vec3::Zero(), turn_end = Vec3::Zero();
     };
 
-  private:
     /// The motion to a pose; its way is `length`, of which `before` and `after` lie in corners.
     struct Motion {
         double length = 0.0;       ///< mm; rad in a pure rotation; 0: there is no motion
@@ -80,6 +79,8 @@ class MotionPlan {
         bool curved = false;       ///< on a curve at one end at least
         Bow bow{};                 ///< of a curved one
     };
+
+  private:
     struct Place {
         std::size_t stretch;
         double length;

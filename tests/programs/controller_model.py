@@ -94,14 +94,14 @@ class Run:
         return min(half, block.zone)
 
     def _tangent(self, k):
-        """(3,) of the spline at node k, for the chord's length as parameter (Catmull and Rom, unequal knots)."""
+        """(3,) of the spline at node k: the mean of both directions, each by its own length."""
         if not 0 < k < len(self.nodes) - 1 or self.zones[k] != math.inf:
             at = min(k, len(self.lengths) - 1)
             if k > 0 and (k == len(self.nodes) - 1 or self.blocks[k - 1].kind == "spline"):
                 at = k - 1
             return self.directions[at]
         a, b = self.lengths[k - 1], self.lengths[k]
-        return (b * self.directions[k - 1] + a * self.directions[k]) / (a + b)
+        return (a * self.directions[k - 1] + b * self.directions[k]) / (a + b)
 
     def _place(self, k, u):
         """(3,) mm at u mm along block k."""
@@ -233,7 +233,7 @@ class Run:
         if self.zones[node] != math.inf:
             return self.turns[k]
         a, b = self.lengths[node - 1], self.lengths[node]
-        return (b * self.turns[node - 1] + a * self.turns[node]) / (a + b)
+        return (a * self.turns[node - 1] + b * self.turns[node]) / (a + b)
 
     def _seen(self, gain, first):
         """The squares of the speeds from which the robot can stop at the end of the last block that it looks ahead to."""

@@ -126,7 +126,7 @@ def compared(job, blocks, limits):
     for first, last in runs(blocks):
         run = Run(blocks, first, last, limits.cycle_s, limits.look_ahead)
         begin, end = ends[first - 1], ends[last]
-        times = np.linspace(begin, end, 40 * (last - first + 1) + 1)
+        times = np.linspace(begin, end, 150 * (last - first + 1) + 1)
         mine = np.array([path.frame_at(t)[0][:3, 3] for t in times])
         way = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(mine, axis=0), axis=1)))
         samples, low, seen = run.samples(), 0, []
@@ -165,7 +165,7 @@ def forces_of(job):
 
 def nearest(points, way, place, low):
     """(mm from ``place`` to the way through ``points``, where along it), at ``low`` or behind it."""
-    high = min(len(points) - 1, low + 120)
+    high = min(len(points) - 1, low + 450)
     a, b = points[low:high], points[low + 1 : high + 1]
     d = b - a
     length = np.maximum((d * d).sum(axis=1), 1e-18)

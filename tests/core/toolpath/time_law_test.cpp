@@ -210,6 +210,19 @@ TEST(TimeLaw, ACurveGoesThroughItsPosesWithinTheAccelerations) {
     EXPECT_GT(slowest, 1.0);  // it does not stop at its points
 }
 
+TEST(TimeLaw, BesideAShortTurnALongMotionOfACurveDoesNotSwingOut) {
+    std::vector<PathPose> poses{pose_at(0, 0, 0)};
+    for (int k = 1; k <= 8; ++k) poses.push_back(pose_at(0.2 * k, 0, -3.0, 4.0, 0.08 * k));
+    poses.push_back(pose_at(6, 0, 0, 12.0, 0.64));
+    const ToolPath path(poses, {}, law());
+    double most = 0.0;
+    for (double t = path.duration() - path.duration(9); t < path.duration(); t += 1e-3) {
+        most = std::max(most, angle_between(poses.back().base_from_tcp, path.at(t).base_from_tcp));
+    }
+    // 4/27 of the shorter motion's length times the change of turning.
+    EXPECT_LE(most, 4.0 / 27.0 * 0.2 * 0.4 * 1.1);
+}
+
 TEST(TimeLaw, ADenseArcIsRunAtTheSpeedOfItsRadius) {
     // Chords of an arc with zones: v^2 / r <= a.
     const double radius = 5.0;

@@ -293,9 +293,7 @@ class Commands:
         new = np.where(self.rapid, self.feeds, feeds[self.group])
         given = np.concatenate([a["forces"] for a in self.arrays])
         factor = np.ones(len(given)) if factors is None else factors[self.group]
-        machine = self.job["belt_machine"]
         if self.by_hand:
-            machine = {**machine, "force_N": self.hand_force(factor)}
             factor = np.ones(len(given))
         forces = np.where(self.rapid | (factor == 1.0), given, self.forces * factor)
         if self.device is not None:
@@ -312,11 +310,18 @@ class Commands:
             listed = poses.list_poses({**arrays, **changed})
             programs.append({**kept, "poses": listed})
             begin = end
-        return {**self.job, "belt_machine": machine, "programs": programs}
+        return {**self.pressed(factors), "programs": programs}
+
+    def pressed(self, factors: Floats | None = None) -> dict[str, Any]:
+        """The job with the force that ``factors`` set by hand."""
+        if not self.by_hand or factors is None:
+            return dict(self.job)
+        machine = records.plain(typed(self.job).belt_machine)
+        return {**self.job, "belt_machine": {**machine, "force_N": self.hand_force(factors)}}
 
     def hand_force(self, factors: Floats) -> float:
         """N that is set by hand on the belt machine, with the one factor of ``factors``; in the robot's time to a tenth."""
-        force = float(self.job["belt_machine"]["force_N"])
+        force = float(typed(self.job).belt_machine.force_N)
         factor = float(factors[0])
         if factor == 1.0:
             return force

@@ -148,8 +148,7 @@ def _read(
     plan: Plan, entries: Sequence[Json], folder: Path | str, half: bool, context: core.RunContext
 ) -> _Read:
     """``half``: the plan is at half the spacing already, and its files are simulated as they are."""
-    given = {**plan.commands.job, "belt_machine": plan.job["belt_machine"]}  # a force set by hand
-    data = with_programs(given, entries, folder, _own_time(plan))
+    data = with_programs(plan.commands.pressed(plan.factors), entries, folder, _own_time(plan))
     part = context.part(0.0, 0.6)
     fine = data if half else at_half(data, context)
     result = runs.run(fine, part, influence=True, shifts=True)

@@ -16,6 +16,7 @@
 #include "base/parallel.h"
 #include "beltgrinding/error.h"
 #include "beltgrinding/shape.h"
+#include "crowns.h"
 #include "face_sampler.h"
 #include "heightfield/edge_rays.h"
 #include "shape_impl.h"
@@ -31,6 +32,7 @@ constexpr double kBytesPerSample = 2 * (57 + 2 * sizeof(Triangle)) + 110;
 constexpr double kFitMargin = 1.02;        // the spacing that is proposed must really fit
 constexpr double kAreaDisagreement = 0.1;  // between integration and samples: worth a warning
 constexpr std::size_t kEnoughSamples = 200;
+constexpr int kMostRefinements = 4;
 
 double perimeter(const TopoDS_Face& face) {
     try {
@@ -191,9 +193,24 @@ double whole_area(const std::vector<Job>& jobs, const Shape::Impl& impl) {
     return area;
 }
 
+/// Samples a face again until noses and edge rounds finer than the spacing have a row on each
+/// crown.
+void resolve_crowns(FaceSamples& samples, FaceRequest request, const RunContext& context) {
+    const double spacing = request.spacing;
+    for (int k = 0; k < kMostRefinements; ++k) {
+        const double wanted = crown_spacing(samples, spacing);
+        if (!(wanted > 0)) return;
+        // What the first samples saw of a nose is wider than it is.
+        if (k > 0) request.spacing *= 0.5;
+        request.edge_spacing = k > 0 ? std::min(wanted, 0.5 * request.edge_spacing) : wanted;
+        request.edge_spacing = std::min(request.edge_spacing, request.spacing);
+        samples = sample_face(request, context);
+    }
+}
+
 /// Takes the samples of a job's face as the request says for all, or says why there are none.
-void take_samples(Job& job, FaceRequest request, const Shape::Impl& impl, bool reversed,
-                  const RunContext& context) {
+void take_samples(Job& job, FaceRequest request, SampleBudget* budget, const Shape::Impl& impl,
+                  bool reversed, const RunContext& context) {
     if (job.area < kZeroArea) {
         job.warning = {"brep.face_without_area",
                        "face {face} of {shape} has no area and is left out",
@@ -205,6 +222,11 @@ void take_samples(Job& job, FaceRequest request, const Shape::Impl& impl, bool r
         request.area = job.area;
         request.reverse = (request.face.Orientation() == TopAbs_REVERSED) != reversed;
         job.samples = sample_face(request, context);
+        // It may be said how fine curved places are sampled.
+        if (!(request.precision > 0 || request.edge_spacing > 0)) {
+            request.budget = budget;
+            resolve_crowns(job.samples, request, context);
+        }
         if (job.samples.point.size() > kEnoughSamples &&
             std::abs(job.samples.sampled_area / job.area - 1) > kAreaDisagreement)
             job.warning = {"brep.areas_differ",
@@ -257,7 +279,7 @@ HeightField sample_faces(const Shape& shape, std::vector<std::size_t> faces,
     std::atomic<std::size_t> done{0};
     parallel_blocks(jobs.size(), 1, context, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            take_samples(jobs[i], request, impl, reversed[jobs[i].face] != 0, context);
+            take_samples(jobs[i], request, &budget, impl, reversed[jobs[i].face] != 0, context);
             context.report(0.05 + 0.9 * double(++done) / double(jobs.size()));
         }
     });

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -65,8 +66,11 @@ class Press {
         const int most = static_cast<int>(std::min(round, 1.0 * kMaxCells));
         for (int nx = kFirstCells;; nx *= 2) {
             grid_.nx = std::min(nx, most);
-            SingleContactResult result = press();
-            if (grid_.nx == most || !reaches_ends(result)) return result;
+            // An edge can lie beyond the first grids.
+            const std::optional<SingleContactResult> result = press();
+            if (result && (grid_.nx == most || !reaches_ends(*result))) return *result;
+            if (grid_.nx == most)
+                throw InputError("contact.none", "contact: the wheel meets the workpiece nowhere");
         }
     }
 
@@ -91,22 +95,47 @@ class Press {
         problem_.drop = profile_drop(contact_.wheel, grid_);
         problem_.coverage = covered_.share;
     }
-    /// Where the wheel's centre is when it touches first, mm: by the middles and borders of cells.
+    /// A place of the unmoved wheel: its gap, and where across the workpiece's axis it lies, mm.
+    struct Place {
+        double s, y, gap, at;
+    };
+    Place place(double s, double y) const {
+        const double r = meet(contact_, 0.0, s, y);
+        if (!std::isfinite(r)) return {s, y, kInfinity, kInfinity};
+        return {s, y, r - (contact_.wheel.radius - contact_.wheel.drop(y)),
+                contact_.workpiece.across(r * std::sin(s / contact_.wheel.radius), y)};
+    }
+    /// The smallest gap on the workpiece between two places that are half a cell apart: of its ends
+    /// where one lies between them, else of `to`.
+    double gap_between(const Place& from, const Place& to) const {
+        const auto [low, high] = contact_.workpiece.ends();
+        double least = to.at >= low && to.at <= high ? to.gap : kInfinity;
+        for (const double end : {low, high}) {
+            if (!std::isfinite(end + from.at + to.at) || (from.at < end) == (to.at < end)) continue;
+            const double share = (end - from.at) / (to.at - from.at);
+            const Place on_end =
+                place(from.s + share * (to.s - from.s), from.y + share * (to.y - from.y));
+            least = std::min(least, on_end.gap);
+        }
+        return least;
+    }
+    /// Where the wheel's centre is when it touches first, mm: by the middles and borders of cells,
+    /// and the workpiece's ends between them.
     double first_touch() const {
         double least = kInfinity;
-        const auto [low, high] = contact_.workpiece.ends();
         const double half = 0.5 * contact_.wheel.width;
+        std::vector<Place> before;
         for (int j = 0; j <= 2 * grid_.ny; ++j) {
+            std::vector<Place> row;
             for (int i = 0; i <= 2 * grid_.nx; ++i) {
-                const double s = grid_.s(0) + 0.5 * (i - 1) * grid_.ds;
-                const double y = std::min(j * 0.5 * grid_.dy - half, half);
-                const double r = meet(contact_, 0.0, s, y);
-                if (!std::isfinite(r)) continue;
-                const double at =
-                    contact_.workpiece.across(r * std::sin(s / contact_.wheel.radius), y);
-                if (at < low || at > high) continue;
-                least = std::min(least, r - (contact_.wheel.radius - contact_.wheel.drop(y)));
+                row.push_back(place(grid_.s(0) + 0.5 * (i - 1) * grid_.ds,
+                                    std::min(j * 0.5 * grid_.dy - half, half)));
+                const Place& last = row.back();
+                least = std::min(least, gap_between(i > 0 ? row[row.size() - 2] : last, last));
+                if (j > 0)
+                    least = std::min(least, gap_between(before[static_cast<std::size_t>(i)], last));
             }
+            before = std::move(row);
         }
         return least;
     }
@@ -166,14 +195,11 @@ class Press {
         return result;
     }
 
-    static InputError nowhere() {
-        return {"contact.none", "contact: the wheel meets the workpiece nowhere"};
-    }
-
-    SingleContactResult press() {
-        const auto prepared = model_.prepare(grid_);
+    /// None where the wheel meets nothing within the grid.
+    std::optional<SingleContactResult> press() {
         const double touch = first_touch();
-        if (!std::isfinite(touch)) throw nowhere();
+        if (!std::isfinite(touch)) return {};
+        const auto prepared = model_.prepare(grid_);
         SingleContactResult result;
         result.grid = grid_;
         result.model = prepared->describe();
@@ -187,7 +213,7 @@ class Press {
         int iterations = 0;
         for (int k = 0; k < kMaxPlacements; ++k) {
             set_gap(placed);
-            if (!(problem_.coverage > 0.0).any()) throw nowhere();  // it lies between two cells
+            if (!(problem_.coverage > 0.0).any()) return {};  // it lies between two cells
             {
                 const Stopwatch watch(result.time);
                 result.solution = prepared->solve(problem_, start.size() > 0 ? &start : nullptr);

@@ -312,6 +312,7 @@ TEST(SampleFaces, LiesDenselyAtALeadingEdgeOnly) {
     SamplingOptions options;
     options.spacing = 0.5;
     const Shape shape = leading_edge();
+    options.edge_spacing = 0.5;  // no finer than elsewhere
     const HeightField coarse = sample_faces(shape, {}, options);
     options.edge_spacing = 0.05;
     const HeightField fine = sample_faces(shape, {}, options);
@@ -326,6 +327,26 @@ TEST(SampleFaces, LiesDenselyAtALeadingEdgeOnly) {
     const test::MeshCheck mesh = check_mesh(fine);
     EXPECT_EQ(mesh.open_inside + mesh.turned + mesh.inverted + mesh.without_triangle, 0u);
     for (std::size_t i = 0; i < fine.size(); ++i) ASSERT_GT(fine.area[i], 0.0f);
+}
+
+TEST(SampleFaces, HasARowOnEveryCrownWhateverTheSpacing) {
+    const Shape shape = leading_edge();
+    for (const double spacing : {0.3, 0.4, 0.5, 0.7, 1.0, 2.0}) {
+        SamplingOptions options;
+        options.spacing = spacing;
+        const HeightField field = sample_faces(shape, {}, options);
+        std::size_t on_crown = 0;
+        for (const Vec3f& normal : field.normal) on_crown += normal.z() > 0.985F ? 1 : 0;
+        EXPECT_GT(static_cast<double>(on_crown), 20.0 / spacing) << spacing;
+        EXPECT_LT(largest_bulge(field), 0.017) << spacing;
+        EXPECT_NEAR(total_area(field), 30.0 * 6.0, 0.01 * 180.0) << spacing;
+    }
+    // A round of half a millimetre shows at 0.5 mm as it is, and hollows are left alone.
+    SamplingOptions options;
+    options.spacing = 0.5;
+    const Shape rod = make_shape(BRepPrimAPI_MakeCylinder(0.7, 20).Shape(), "rod");
+    const HeightField field = sample_faces(rod, {0}, options);
+    EXPECT_LT(field.size(), 2.5 * 2.0 * pi * 0.7 * 20 / 0.25);
 }
 
 TEST(SampleFaces, RefusesAPrecisionThatMemoryDoesNotAllow) {

@@ -152,7 +152,7 @@ double Grinding::remove(double part) {
         removed = map.remove(blocks_, rate_, beside_, part, contact.approach);
     }
     recorders_.tell(&Recorder::removed,
-                    Removal{pressing_, state_, rate_, beside_, most, most_beside, part});
+                    Removal{pressing_, state_, rate_, beside_, most, most_beside, part, now_.belt});
     impulse_ += contact.force * part;
     now_.belt.work += kJoule * pressing_.pressing_force() * process_.belt_speed * part;
     now_.belt.volume += removed;

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <utility>
 
 #include "beltgrinding/error.h"
@@ -48,6 +49,7 @@ void each_finish_array(Finish& f, Visit&& visit) {
 }
 
 constexpr const char* kTriangles = "triangles";
+constexpr const char* kSdFreedom = "height_sd_freedom";  // where the heights are not normal
 
 constexpr const char* kFinish = "finish_settled_um";  // where the finish was computed
 constexpr const char* kHeat = "heat_peak_rise_K";     // where heat was computed
@@ -74,6 +76,8 @@ void write_all(const HeightField& field, hid_t file, const std::string& attribut
                          });
     if (!field.height_sd.empty()) {
         write_array(file, kHeightSd, field.height_sd, H5T_NATIVE_FLOAT, 1);
+        if (std::isfinite(field.sd_freedom))
+            write_scalar(file, kSdFreedom, H5T_NATIVE_DOUBLE, &field.sd_freedom);
     }
     if (!field.rays.empty()) write_array(file, kRays, field.rays, H5T_NATIVE_FLOAT, 3);
     if (!field.measured.empty()) {
@@ -120,6 +124,8 @@ HeightField read(std::unique_ptr<Storage> storage, std::string* attributes) {
     }
     if (H5Lexists(file, kHeightSd, H5P_DEFAULT) > 0) {
         read_array(file, kHeightSd, field.height_sd, H5T_NATIVE_FLOAT, 1);
+        if (H5Aexists(file, kSdFreedom) > 0)
+            read_scalar(file, kSdFreedom, H5T_NATIVE_DOUBLE, &field.sd_freedom);
     }
     if (H5Lexists(file, kTrace, H5P_DEFAULT) > 0) {
         each_trace_array(field.trace, [&](const char* array, auto& data, hid_t type) {

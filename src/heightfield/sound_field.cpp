@@ -149,6 +149,8 @@ void Look::numbers() {
     require(std::all_of(f.height_sd.begin(), f.height_sd.end(),
                         [](float sd) { return std::isfinite(sd) && sd >= 0.0F; }),
             "heightfield.deviations", "its standard deviations are no lengths");
+    require(f.sd_freedom > 0.0, "heightfield.freedom",
+            "the freedom of its standard deviations is not above 0");
     require(std::none_of(f.measured.begin(), f.measured.end(),
                          [](float height) { return std::isinf(height); }),
             "heightfield.measured", "its measured heights are no lengths");

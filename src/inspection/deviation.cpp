@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include "base/parallel.h"
+#include "base/student.h"
 #include "beltgrinding/error.h"
 #include "heightfield/sound_field.h"
 
@@ -76,10 +76,6 @@ void refuse_no_band(const Tolerance& tolerance) {
     }
 }
 
-double normal_distribution(double x) {
-    return 0.5 * std::erfc(-x / std::numbers::sqrt2);
-}
-
 /// Fills in what follows from the samples' standard deviations. Sorts `inspected` by them.
 void add_uncertainty(const HeightField& field, const Tolerance& tolerance,
                      std::vector<std::uint32_t>& inspected, double area, DeviationStatistics& s) {
@@ -88,8 +84,9 @@ void add_uncertainty(const HeightField& field, const Tolerance& tolerance,
         const double sd = std::max(static_cast<double>(field.height_sd[i]), 1e-12);
         const double share = field.area[i] / area, h = field.height[i];
         s.sd_mean += share * field.height_sd[i];
-        s.expected_in_tolerance_share += share * (normal_distribution((tolerance.upper - h) / sd) -
-                                                  normal_distribution((tolerance.lower - h) / sd));
+        s.expected_in_tolerance_share +=
+            share * (student_distribution((tolerance.upper - h) / sd, field.sd_freedom) -
+                     student_distribution((tolerance.lower - h) / sd, field.sd_freedom));
     }
     std::sort(inspected.begin(), inspected.end(), [&](std::uint32_t a, std::uint32_t b) {
         return field.height_sd[a] != field.height_sd[b] ? field.height_sd[a] < field.height_sd[b]

@@ -1,3 +1,4 @@
+#include "base/student.h"
 #include "dict.h"
 #include "removal/calibration.h"
 
@@ -5,9 +6,10 @@ namespace beltgrinding::python {
 namespace {
 
 constexpr std::array<const char*, kGrindParameters> kNames{
-    "ln_coefficient", "pressure_exponent", "speed_exponent", "feed_exponent",      "time_exponent",
-    "area_exponent",  "ln_wear_scale",     "wear_rest",      "pressure_threshold", "ln_saturation",
-    "wear_exponent",  "grit_exponent",     "cut_exponent"};
+    "ln_coefficient",     "pressure_exponent", "speed_exponent", "feed_exponent",
+    "time_exponent",      "area_exponent",     "ln_wear_scale",  "wear_rest",
+    "pressure_threshold", "ln_saturation",     "wear_exponent",  "grit_exponent",
+    "cut_exponent",       "first_share",       "ln_first_ratio"};
 
 MeasuredGrinds grinds_from(const py::dict& given) {
     py::dict d = copy_of(given);
@@ -45,6 +47,8 @@ GrindReferences references_from(const py::dict& given) {
 }  // namespace
 
 void bind_calibration(py::module_& m) {
+    m.def("student_quantile", py::vectorize(student_quantile), py::arg("share"), py::arg("freedom"),
+          "The t below which a share lies, of Student's t; freedom inf: the normal distribution.");
     m.attr("GRIND_PARAMETERS") = py::cast(kNames);
     m.def(
         "log_grinds",
@@ -103,7 +107,8 @@ void bind_calibration(py::module_& m) {
         "Robust least squares of ln(measured) with bounds and normal priors (deviation inf: none); "
         "grinds as log_grinds takes them, with "
         "'areas' (k,) mm2 that an unknown (nan) area can be. parameters, covariance, information "
-        "(sandwich, and sum of w J J^T), at_bound, scatter, log_likelihood, residual and weight "
+        "(sandwich, and sum of w J J^T), at_bound, scatter, log_likelihood, "
+        "residual and weight "
         "(n,), shares (k,), "
         "posterior (n, k), iterations, converged.");
 }

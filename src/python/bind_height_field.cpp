@@ -1,3 +1,5 @@
+#include <limits>
+
 #include "arrays.h"
 #include "beltgrinding/height_field.h"
 #include "beltgrinding/stock.h"
@@ -145,13 +147,17 @@ void bind_height_field(py::module_& m) {
             py::arg("height"))
         .def(
             "set_height_sd",
-            [](HeightField& field, const std::vector<float>& sd) {
+            [](HeightField& field, const std::vector<float>& sd, double freedom) {
                 if (sd.size() != field.size()) {
                     throw InputError("call.height_sd", "set_height_sd needs one value per sample");
                 }
                 field.height_sd = sd;
+                field.sd_freedom = freedom;
             },
-            py::arg("sd"), "Standard deviation of every height, mm.")
+            py::arg("sd"), py::arg("freedom") = std::numeric_limits<double>::infinity(),
+            "Standard deviation of every height, mm: the scale of Student's t with degrees of "
+            "freedom, inf: of a normal distribution.")
+        .def_readonly("sd_freedom", &HeightField::sd_freedom)
         .def(
             "set_measured",
             [](HeightField& field, const std::vector<float>& measured) {

@@ -13,7 +13,8 @@ py::array_t<double> rows(const std::vector<Vec3>& vectors) {
     return array;
 }
 
-py::dict to_dict(Section&& section) {
+/// `freedom`: that of the field's standard deviations.
+py::dict to_dict(Section&& section, double freedom) {
     py::list pieces;
     for (SectionPiece& piece : section.pieces) {
         py::dict d;
@@ -32,6 +33,7 @@ py::dict to_dict(Section&& section) {
     d["point"] = section.origin;
     d["normal"] = section.normal;
     d["pieces"] = pieces;
+    d["sd_freedom"] = freedom;
     return d;
 }
 
@@ -44,7 +46,7 @@ py::dict section(const HeightField& field, const Vec3& a, const Vec3& b) {
         const py::gil_scoped_release release;
         found = cut(field, a, b);
     }
-    return to_dict(std::move(found));
+    return to_dict(std::move(found), field.sd_freedom);
 }
 
 }  // namespace

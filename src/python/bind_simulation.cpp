@@ -74,6 +74,7 @@ py::dict to_dict(const SimulationResult& result) {
     d["lost_volume"] = result.lost_volume();
     d["wall"] = wall;
     d["resumed"] = result.resumed;
+    d["touched"] = result.touched;
     d["unchanged"] = result.unchanged;
     return d;
 }

@@ -244,7 +244,7 @@ SimulationOptions options_from(const Record& input) {
     o.limits.heat = kMmPerM * law.get<double>("heat_limit_MPa_m_s");
     o.limits.pressure = law.get<double>("pressure_limit_MPa");
     for (const Record& shifted : input.each("shifted_laws"))
-        o.outputs.shifted_laws.push_back(law_from(shifted));
+        o.outputs.shifted_laws.push_back({law_from(shifted), wear_from(shifted.in("wear"))});
     const Record steps = input.in("simulation");
     o.limits.orientation_jump = steps.get<double>("orientation_jump_deg") * kRadPerDegree;
     o.limits.tilt = steps.get<double>("tilt_limit_deg") * kRadPerDegree;

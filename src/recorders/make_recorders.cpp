@@ -35,7 +35,7 @@ Recorders make_recorders(const SampleBlocks& blocks, const ToolPath& path, const
         all.add(std::make_unique<FinishRecorder>(blocks, options.finish, process.belt_speed,
                                                  options.resolution.max_travel));
     if (outputs.influence) all.add(std::make_unique<InfluenceRecorder>(blocks, motions));
-    all.add(std::make_unique<ShiftRecorder>(blocks, outputs.shifted_laws));
+    all.add(std::make_unique<ShiftRecorder>(blocks, outputs.shifted_laws, process));
     if (outputs.force_influence)
         all.add(std::make_unique<ForceInfluenceRecorder>(blocks, motions, law));
     for (const auto& make : outputs.recorders) all.add(make(blocks));

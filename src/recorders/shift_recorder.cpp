@@ -6,10 +6,12 @@
 
 namespace beltgrinding {
 
-ShiftRecorder::ShiftRecorder(const SampleBlocks& blocks, const Laws& laws)
+ShiftRecorder::ShiftRecorder(const SampleBlocks& blocks, const Laws& laws,
+                             const ProcessSettings& process)
     : Keeps(&PhaseTimes::removal),
       blocks_(blocks),
       laws_(laws),
+      process_(process),
       shifts_(Eigen::ArrayXXd::Zero(static_cast<Eigen::Index>(blocks.field().size()),
                                     static_cast<Eigen::Index>(laws.size()))) {}
 
@@ -20,7 +22,10 @@ std::string ShiftRecorder::kind() const {
 void ShiftRecorder::removed(const Removal& removal) {
     const DisplacedPressure& pressure = removal.pressing.displaced_pressure();
     for (std::size_t k = 0; k < laws_.size(); ++k) {
-        rate_under(*laws_[k], pressure, removal.state, rate_, beside_);
+        ProcessState state = removal.state;
+        if (laws_[k].wear)
+            state.belt_wear = process_.belt_wear * laws_[k].wear->remaining(removal.belt);
+        rate_under(*laws_[k].law, pressure, state, rate_, beside_);
         auto shift = shifts_.col(static_cast<Eigen::Index>(k));
         removal.pressing.map().for_samples(rate_.min(removal.most) - removal.rate,
                                            beside_.min(removal.most_beside) - removal.beside,

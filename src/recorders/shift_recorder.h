@@ -12,10 +12,10 @@ namespace beltgrinding {
 /// How much more each shifted law would remove, for `SimulationResult::shifts`.
 class ShiftRecorder final : public Keeps<ByBlock<Eigen::ArrayXXd>, Recorder> {
   public:
-    using Laws = std::vector<std::shared_ptr<const RemovalLaw>>;
+    using Laws = std::vector<ShiftedLaw>;
 
-    /// Both must outlive it.
-    ShiftRecorder(const SampleBlocks& blocks, const Laws& laws);
+    /// All must outlive it.
+    ShiftRecorder(const SampleBlocks& blocks, const Laws& laws, const ProcessSettings& process);
 
     std::string kind() const override;
     void removed(const Removal& removal) override;
@@ -29,6 +29,7 @@ class ShiftRecorder final : public Keeps<ByBlock<Eigen::ArrayXXd>, Recorder> {
 
     const SampleBlocks& blocks_;
     const Laws& laws_;
+    const ProcessSettings& process_;
     Eigen::ArrayXXd shifts_;        // (samples, laws), mm
     Eigen::ArrayXd rate_, beside_;  // mm/s, of one of them
 };

@@ -44,6 +44,7 @@ void StepRecorder::end() {
 
 void StepRecorder::keep(HeightField&, SimulationResult& result) {
     result.steps = std::move(records_);
+    result.touched = touched_;
 }
 
 StepPart StepRecorder::take(std::span<const std::uint32_t>) {

@@ -20,8 +20,9 @@ constexpr double kFull = 3.0, kLevel = 5.0, kNone = 8.0;
 constexpr double kMad = 1.4826;         // median of |r| to deviation, for a normal r
 constexpr double kLeastScatter = 1e-4;  // a table without scatter is not without rounding
 constexpr double kNearBound = 1e-3;     // of the range
-constexpr double kMostLeverage = 0.95;
 constexpr double kConverged = 1e-6;
+constexpr double kMostLeverage = 0.95;
+constexpr Eigen::Index kFreedomOfSandwich = 6;
 constexpr int kMostIterations = 200;
 constexpr int kHuberIterations = 10;  // the loss has local minima: come near them convexly
 constexpr double kWinsor =
@@ -381,7 +382,11 @@ class Fit {
             const double rest = 1.0 - std::clamp(leverage, 0.0, kMostLeverage);
             meat += scores.col(i) * scores.col(i).transpose() / (rest * rest);
         }
-        result.covariance(open, open) = inverse * meat * inverse;
+        const bool few = n - static_cast<Eigen::Index>(free.size()) < kFreedomOfSandwich;
+        if (few)
+            result.covariance(open, open) = variance * inverse;
+        else
+            result.covariance(open, open) = inverse * meat * inverse;
     }
 
     const MeasuredGrinds& grinds_;

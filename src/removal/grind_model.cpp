@@ -100,6 +100,20 @@ MeanCut mean_cut(const GrindVector& x, double reference, const MeasuredGrinds& g
     return cut;
 }
 
+/// What is left of the part of the cut that wears, in one stage or in two, and its derivatives by
+/// ln of the scale, the first stage's share and ln of its scale's ratio.
+struct Decay {
+    double left, by_scale, by_share, by_ratio;
+};
+
+Decay decay_of(const GrindVector& x, double worn) {
+    const double share = x[kFirstShare], first = worn / std::exp(x[kLnFirstRatio]);
+    const double early = std::exp(-first), late = std::exp(-worn);
+    const double by_ratio = share * early * first;
+    return {share * early + (1.0 - share) * late, by_ratio + (1.0 - share) * late * worn,
+            early - late, by_ratio};
+}
+
 }  // namespace
 
 double log_grind(const GrindVector& x, const GrindReferences& references,
@@ -113,9 +127,10 @@ double log_grind(const GrindVector& x, const GrindReferences& references,
     const double worn = grinds.wear[i] / std::exp(x[kLnWearScale]);  // 0 for an infinite scale
     const double exponent = x[kWearExponent];
     const bool power = std::isfinite(exponent);
-    const double decay = std::exp(-worn), rest = x[kWearRest];
+    const Decay decay = decay_of(x, worn);
+    const double rest = x[kWearRest];
     const double ln_cut =
-        power ? -exponent * std::log1p(worn) : std::log(rest + (1.0 - rest) * decay);
+        power ? -exponent * std::log1p(worn) : std::log(rest + (1.0 - rest) * decay.left);
     const double ln_grit =
         grinds.grit.size() > 0 ? std::log(grinds.grit[i] / references.grit) : 0.0;
     const double ln_remaining = grinds.cut.size() > 0 ? std::log(grinds.cut[i]) : 0.0;
@@ -130,8 +145,10 @@ double log_grind(const GrindVector& x, const GrindReferences& references,
         g[kAreaExponent] = ln_area;
         const double cut = std::exp(ln_cut);
         g[kLnWearScale] =
-            power ? exponent * worn / (1.0 + worn) : (1.0 - rest) * decay * worn / cut;
-        g[kWearRest] = power ? 0.0 : -std::expm1(-worn) / cut;
+            power ? exponent * worn / (1.0 + worn) : (1.0 - rest) * decay.by_scale / cut;
+        g[kWearRest] = power ? 0.0 : (1.0 - decay.left) / cut;
+        g[kFirstShare] = power ? 0.0 : (1.0 - rest) * decay.by_share / cut;
+        g[kLnFirstRatio] = power ? 0.0 : (1.0 - rest) * decay.by_ratio / cut;
         g[kWearExponent] = power ? -std::log1p(worn) : 0.0;
         g[kPressureThreshold] = mean.by_threshold;
         g[kLnSaturation] = mean.by_saturation;

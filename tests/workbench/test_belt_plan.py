@@ -124,6 +124,22 @@ def test_five_hundred_parts_over_the_life_of_their_belts_as_the_manual_shows_the
     pictures.check(pictures.RELEASE, ["belt-plan"])
 
 
+def test_a_calibrated_wear_says_how_long_a_belt_may_last():
+    wear = {**WEAR, "scale": 40000.0, "rest": 0.0}
+    job = job_of(wear)
+    part = belt_plan.part_of(job, 10.0, 0.0, "feed")[0]
+    assert belt_plan.plan(job, part, COSTS, 400).life_95 is None
+    told = {"parameters": ["ln_wear_scale"], "covariance": [[0.01]], "scatter": 0.1}
+    law = {**job["law"], "calibration": told}
+    found = belt_plan.plan({**job, "law": law}, part, COSTS, 400)
+    low, high = found.life_95
+    assert low < found.life < high < 400
+    for by, end in ((-0.196, low), (0.196, high)):
+        moved = job_of({**wear, "scale": wear["scale"] * np.exp(by)})
+        assert end == pytest.approx(belt_plan.plan(moved, part, COSTS, 400).life, rel=0.08)
+    assert belt_plan.summary(found, COSTS)["life_parts_95"] == [low, high]
+
+
 def test_limits_end_a_belts_life(part):
     job = job_of()
     narrow = belt_plan.part_of(job, 20.0, 0.0, "feed")[0]

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "beltgrinding/belt_wear.h"
 #include "beltgrinding/error.h"
 #include "beltgrinding/removal_law.h"
 #include "support/hammann.h"
@@ -36,6 +37,27 @@ GrindVector linear() {
     return x;
 }
 
+TEST(Calibration, AGrindOnAWearingBeltIsThatOfItsLaw) {
+    MeasuredGrinds g = some(8);
+    GrindVector x = linear();
+    x[kLnWearScale] = std::log(3e5);
+    x[kWearRest] = 0.3;
+    x[kFirstShare] = 0.4;
+    x[kLnFirstRatio] = std::log(0.05);
+    BeltWear::Parameters two;
+    two.model = BeltWear::Model::kTwoStage;
+    two.scale = 3e5;
+    two.rest = 0.3;
+    two.first_share = 0.4 * 0.7;
+    two.first_scale = 0.05 * 3e5;
+    const BeltWear wear(two);
+    for (Eigen::Index i = 0; i < 8; ++i) {
+        const double worn = log_grind(x, {}, g, i, g.area[i], nullptr);
+        const double fresh = log_grind(linear(), {}, g, i, g.area[i], nullptr);
+        EXPECT_NEAR(std::exp(worn - fresh), wear.remaining({g.wear[i], 0.0, 0.0}), 1e-12);
+    }
+}
+
 TEST(Calibration, LinearGrindIsHammannsDepth) {
     MeasuredGrinds g = some(1);
     g.feed[0] = 40.0;
@@ -57,7 +79,8 @@ TEST(Calibration, GradientIsThatOfDifferences) {
     g.grit = 120.0 + 60.0 * Eigen::ArrayXd::Random(6);
     g.cut = 0.6 + 0.3 * Eigen::ArrayXd::Random(6);
     GrindVector x = linear();
-    x << -11.0, 1.4, 1.2, 0.1, 1.3, 0.2, std::log(3e5), 0.3, 0.01, std::log(0.4), kInf, -0.8, 0.3;
+    x << -11.0, 1.4, 1.2, 0.1, 1.3, 0.2, std::log(3e5), 0.3, 0.01, std::log(0.4), kInf, -0.8, 0.3,
+        0.4, std::log(0.2);
     constexpr double kStep = 1e-6;
     for (Eigen::Index i = 0; i < 6; ++i) {
         GrindVector gradient;

@@ -141,7 +141,7 @@ TEST(Checkpoints, WhatIsKeptBesides) {
     s.options.outputs.influence = s.options.outputs.force_influence = true;
     for (const double factor : {1.1, 0.8})
         s.options.outputs.shifted_laws.push_back(
-            std::make_shared<LocalLaw>(LocalLawParameters{factor * s.coefficient}));
+            {std::make_shared<LocalLaw>(LocalLawParameters{factor * s.coefficient})});
     s.records = true;
     expect_the_same_from_checkpoints(s);
     s.recorded_bytes = 20'000;  // frames become fewer on the way, more than once

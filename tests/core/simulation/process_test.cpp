@@ -176,8 +176,8 @@ TEST(Process, ShiftedLawsGiveTheUncertaintyOfWhatIsRemoved) {
     SimulationOptions o = options();
     LocalLawParameters more{1.1 * kCoefficient}, steeper{kCoefficient};
     steeper.pressure_exponent = 1.2;
-    o.outputs.shifted_laws = {std::make_shared<LocalLaw>(more),
-                              std::make_shared<LocalLaw>(steeper)};
+    o.outputs.shifted_laws = {{std::make_shared<LocalLaw>(more)},
+                              {std::make_shared<LocalLaw>(steeper)}};
     const SimulationResult result = pass(field, {kCoefficient}, o);
     ASSERT_EQ(result.shifts.rows(), static_cast<Eigen::Index>(field.size()));
     double removed = 0.0, shifted = 0.0;
@@ -199,6 +199,30 @@ TEST(Process, ShiftedLawsGiveTheUncertaintyOfWhatIsRemoved) {
     const SimulationResult plain = pass(again, {kCoefficient}, o);
     EXPECT_EQ(again.height, field.height);  // looking at the uncertainty changes nothing
     EXPECT_EQ(plain.shifts.cols(), 0);
+}
+
+TEST(Process, AShiftedWearRemovesWhatThatWearWould) {
+    BeltWear::Parameters wear;
+    wear.model = BeltWear::Model::kExponential;
+    wear.scale = 1e-3 * kForce * kSpeed * kLength / kFeed;  // J: a pass wears the belt to 1/e
+    SimulationOptions o = options();
+    o.process.wear = BeltWear(wear);
+    o.process.belt_wear = 0.9;
+    BeltWear::Parameters slower = wear;
+    slower.scale *= 1.02;
+    const auto law = std::make_shared<LocalLaw>(LocalLawParameters{kCoefficient});
+    o.outputs.shifted_laws = {{law}, {law, BeltWear(slower)}};
+    HeightField field = plate(), other = field;
+    const SimulationResult result = pass(field, {kCoefficient}, o);
+    o.process.wear = BeltWear(slower);
+    const SimulationResult truth = pass(other, {kCoefficient}, o);
+    EXPECT_EQ(result.shifts.col(0).abs().maxCoeff(), 0.0);
+    double shifted = 0.0;
+    for (std::size_t s = 0; s < field.size(); ++s)
+        shifted += field.area[s] * result.shifts(static_cast<Eigen::Index>(s), 1);
+    const double more = truth.removed_volume - result.removed_volume;
+    EXPECT_GT(more, 0.0);
+    EXPECT_NEAR(shifted, more, 0.02 * more);
 }
 
 }  // namespace

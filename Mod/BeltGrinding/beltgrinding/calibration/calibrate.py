@@ -18,6 +18,7 @@ from ..base.files import cannot_be_written, write_whole
 from ..base.kinds import Array, Facts, Floats, Json
 from ..engine import InputError, core
 from . import contacts, report as calibration_report
+from .areas import of_unknown_areas
 from .cautions import (
     LEAST_GRINDS,
     LEAST_SPREAD,
@@ -41,8 +42,14 @@ MOST_ERROR = 1.0  # standard error from which an exponent (or ln of a scale) is 
 SINGULAR = 1e-7  # of the scaled information's eigenvalues: the parameters are one
 # Of the evidence for a further parameter, very strong after Kass and Raftery, JASA 90, 1995.
 STRONG = math.log(150.0)
-# How the cut may fall: by a power; exponentially, to nothing or to a rest.
-WEAR = (("wear_exponent",), ("ln_wear_scale",), ("ln_wear_scale", "wear_rest"))
+# How the cut may fall: by a power; exponentially, to nothing or to a rest; with a break-in before.
+BREAK_IN = ("first_share", "ln_first_ratio")
+WEAR = (
+    ("wear_exponent",),
+    ("ln_wear_scale",),
+    ("ln_wear_scale", "wear_rest"),
+    ("ln_wear_scale", "wear_rest", *BREAK_IN),
+)
 
 
 def fit(
@@ -121,7 +128,7 @@ def _fitted(
     name_inputs(table, warnings)
     free, found = _determined(model, free, warnings)
     free, found = _extended(model, free, found)
-    found["between"] = _between(model, found, free)
+    found["between"] = _between(model, found, free) + of_unknown_areas(model, found)
     name_unsure(model, found, free, warnings)
     name_pairs(found, free, warnings)
     if not found["converged"]:
@@ -224,9 +231,12 @@ def _determined(model: Model, free: list[str], warnings: Facts) -> tuple[list[st
         name = _undetermined(model, found, free, warnings)
         if name is None:
             return free, found
-        free.remove(name)
-        if name == "ln_wear_scale" and "wear_rest" in free:
-            free.remove("wear_rest")
+        gone = {name}
+        if name == "ln_wear_scale":
+            gone |= {"wear_rest", *BREAK_IN}
+        if name in BREAK_IN:
+            gone |= {*BREAK_IN}
+        free = [one for one in free if one not in gone]
 
 
 def _undetermined(model: Model, found: Json, free: Sequence[str], warnings: Facts) -> str | None:

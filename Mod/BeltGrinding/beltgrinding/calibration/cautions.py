@@ -10,7 +10,7 @@ import numpy as np
 
 from ..base.kinds import Facts, Floats, Json
 from ..engine import core
-from . import contacts
+from . import areas, contacts
 from .law import worn
 from .model import DEFAULTS, INDEX, PRIORS, correlations
 
@@ -33,6 +33,8 @@ EFFECT = {  # of the parameters: code and English form
     "ln_saturation": ("calibration.the_saturation", "the saturation pressure"),
     "grit_exponent": ("calibration.grit", "grit"),
     "cut_exponent": ("calibration.remaining_cut", "remaining cut"),
+    "first_share": ("calibration.break_in", "the belt's break-in"),
+    "ln_first_ratio": ("calibration.break_in", "the belt's break-in"),
 }
 PRESSURE = ("pressure_exponent", "area_exponent")  # force and area
 LEAST_GRINDS = 4
@@ -148,7 +150,7 @@ def name_pairs(found: Json, free: Sequence[str], warnings: Facts) -> None:
 
 def cautions(model: Model, found: Json, wear_unit: float) -> Facts:
     """What the reader of the result has to know."""
-    table, notes = model.table, list(model.table.notes)
+    table, notes = model.table, [*model.table.notes, *areas.caution(model, found)]
     known = np.isfinite(table.relative).all(axis=1)
     percent = 100.0 * (contacts.too_much(found["parameters"][INDEX["pressure_exponent"]]) - 1.0)
     if known.any() and not known.all():
@@ -160,7 +162,7 @@ def cautions(model: Model, found: Json, wear_unit: float) -> Facts:
                 count=int((~known).sum()),
             )
         )
-    elif not known.any() and abs(percent) >= LEAST_PERCENT:
+    elif not known.any() and not table.nominal_area and abs(percent) >= LEAST_PERCENT:
         notes.append(
             core.Fact(
                 "calibration.mean_pressure",

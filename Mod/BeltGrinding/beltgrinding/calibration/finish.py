@@ -103,7 +103,9 @@ def fit_finish(
                 lines=", ".join(str(line) for line in table.lines[outliers]),
             )
         )
-    deviation = float(_deviation(table, found, free, references).max()) * quantile / student(1e9)
+    deviation = (
+        float(_deviation(table, found, free, references).max()) * quantile / student(math.inf)
+    )
     ranges = {
         key: [float(getattr(table, name).min()), float(getattr(table, name).max())]
         for key, name in RANGES.items()

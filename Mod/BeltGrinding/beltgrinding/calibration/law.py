@@ -5,27 +5,41 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from statistics import NormalDist
 from typing import Any
 
 import numpy as np
 
 from ..base.files import cannot_be_written, write_whole
 from ..base.kinds import Floats, Json
-from ..engine import InputError
+from ..engine import InputError, core
 from .model import DEFAULTS, INDEX, NAMES, Model
 from .table import Table, from_columns, read, with_areas
 
-# What a law's 'calibration' carries: ln K and the exponents.
+# What a law's 'calibration' carries: ln K, the exponents, and what else a job's law has.
 LAW_NAMES = {
     "ln_coefficient": "coefficient",
     "pressure_exponent": "pressure_exponent",
     "speed_exponent": "speed_exponent",
     "feed_exponent": "feed_exponent",
 }
+CARRIED = {
+    **LAW_NAMES,
+    **{
+        name: name
+        for name in (
+            "ln_wear_scale",
+            "wear_rest",
+            "wear_exponent",
+            "first_share",
+            "ln_first_ratio",
+            "pressure_threshold",
+            "ln_saturation",
+        )
+    },
+}
 
+ASSUMED = ("pressure_exponent", "speed_exponent")  # 1 where they were not varied
 CURVES = ("pressure_curve", "speed_curve", "feed_curve")
-NORMAL = NormalDist()
 LEAST_LEFT = 0.05  # of a grind's variance, once it has pulled the fit to itself
 
 
@@ -34,21 +48,25 @@ def worn(found: Json) -> bool:
 
 
 def student(freedom: float, share: float = 0.95) -> float:
-    """Student's t within which ``share`` lies (Abramowitz and Stegun, 26.7.5: expansion in 1/n)."""
-    z, n = NORMAL.inv_cdf(0.5 + 0.5 * share), max(float(freedom), 1.0)
-    terms = (
-        (z**3 + z) / 4,
-        (5 * z**5 + 16 * z**3 + 3 * z) / 96,
-        (3 * z**7 + 19 * z**5 + 17 * z**3 - 15 * z) / 384,
-        (79 * z**9 + 776 * z**7 + 1482 * z**5 - 1920 * z**3 - 945 * z) / 92160,
-    )
-    return z + sum(term / n ** (k + 1) for k, term in enumerate(terms))
+    """Student's t within which ``share`` lies; freedom inf: of the normal distribution."""
+    return float(core.student_quantile(0.5 + 0.5 * share, freedom))
+
+
+def freedom(model: Model, free: Sequence[str]) -> int:
+    """Degrees of freedom of a fit's scatter."""
+    return max(len(model.table.measured) - len(free), 1)
+
+
+def half_width(calibration: Json, share: float = 0.95) -> float:
+    """Deviations of a law's calibration on each side within which ``share`` of new grinds lie."""
+    quantile = student(calibration.get("freedom", math.inf), share)
+    # A law of an earlier version has both in one factor, for 95 %.
+    return quantile * calibration.get("widening", calibration.get("fit", {}).get("widening", 1.0))
 
 
 def widening(model: Model, found: Json, free: Sequence[str]) -> float:
-    """Factor on a prediction's deviation after which 1.96 of them hold 95 % of new grinds: Student's
-    t, and as much more as the grinds, each predicted without itself, scatter beyond it (the quantile
-    of conformal prediction, Barber, Candes, Ramdas and Tibshirani, Annals of Statistics 49, 2021; the
+    """Factor, at least 1, by which the grinds, each predicted without itself, scatter beyond Student's t (the
+    quantile of conformal prediction, Barber, Candes, Ramdas and Tibshirani, Annals of Statistics 49, 2021; the
     leverages stand for leaving out).
     """
     said, gradient, area_variance = model.predict(found["parameters"], found["shares"])
@@ -58,12 +76,12 @@ def widening(model: Model, found: Json, free: Sequence[str]) -> float:
     left = np.maximum(variance - own, LEAST_LEFT * variance) + area_variance
     sizes = np.abs(np.log(model.table.measured) - said) / np.sqrt(left)
     sizes = np.sort(sizes[found["weight"] > 0])  # blunders are none of it
-    count, freedom = len(sizes), len(model.table.measured) - len(free)
+    count = len(sizes)
     if not count:
         return 1.0
     rank = min(round(0.95 * (count + 1)), count)
-    beyond = sizes[rank - 1] / student(freedom, rank / (count + 1))
-    return max(1.0, float(beyond)) * student(freedom) / student(math.inf)
+    beyond = sizes[rank - 1] / student(freedom(model, free), rank / (count + 1))
+    return max(1.0, float(beyond))
 
 
 def law_of(
@@ -86,8 +104,14 @@ def law_of(
         }
         if math.isfinite(x["wear_exponent"]):
             wear.update(model="power", rest=0.0, exponent=x["wear_exponent"])
-    own = [name for name in free if name in LAW_NAMES]
-    at = [INDEX[name] for name in own]
+        elif x["first_share"] > 0.0:
+            wear.update(
+                model="two_stage",
+                first_share=(1.0 - x["wear_rest"]) * x["first_share"],
+                first_scale=wear["scale"] * math.exp(x["ln_first_ratio"]),
+            )
+    assumed = [name for name in ASSUMED if name not in free]
+    own = [*(name for name in free if name in CARRIED), *assumed]
     everything = [INDEX[name] for name in free]
     saturation = x["ln_saturation"]
     return {
@@ -104,16 +128,17 @@ def law_of(
         **{key: [] for key in CURVES},  # a curve would replace what is found here
         "wear": wear,
         "calibration": {
-            "parameters": [LAW_NAMES[name] for name in own],
-            "covariance": (found["covariance"] + found["between"])[np.ix_(at, at)].tolist(),
+            "parameters": [CARRIED[name] for name in own],
+            "covariance": _covariance(model, found, own, assumed).tolist(),
             "scatter": found["scatter"],
+            "freedom": freedom(model, free),
+            "widening": widening(model, found, free),
             "fit": {
                 "parameters": list(free),
                 "covariance": found["covariance"][np.ix_(everything, everything)].tolist(),
                 "grinds": len(model.table.measured),
                 "contacts_known": int(np.isfinite(model.table.relative).all(axis=1).sum()),
                 **({"contact": contact} if contact else {}),
-                "widening": widening(model, found, free),
                 "time_exponent": x["time_exponent"],
                 "reference_time_s": model.references["time"],
                 "area_exponent": x["area_exponent"],
@@ -127,6 +152,23 @@ def law_of(
             },
         },
     }
+
+
+def _covariance(model: Model, found: Json, names: Sequence[str], assumed: Sequence[str]) -> Floats:
+    """(k, k) of the parameters that a law carries; of those ``assumed``, which the data do not vary, what is published."""
+    at = [INDEX[name] for name in names]
+    covariance: Floats = (found["covariance"] + found["between"])[np.ix_(at, at)]
+    for name in assumed:
+        k, (mean, deviation) = names.index(name), model.priors[name]
+        covariance[k, k] += deviation**2 + (mean - DEFAULTS[name]) ** 2
+    if "first_share" not in names:
+        return covariance
+    # A job's first share is of the whole cut, not of what wears.
+    turn, k = np.eye(len(names)), names.index("first_share")
+    turn[k, k] = 1.0 - found["parameters"][INDEX["wear_rest"]]
+    if "wear_rest" in names:
+        turn[k, names.index("wear_rest")] = -found["parameters"][INDEX["first_share"]]
+    return turn @ covariance @ turn.T
 
 
 def predict(
@@ -167,7 +209,7 @@ def predict(
             "ni,ij,nj->n", slopes, np.asarray(fitted["covariance"]), slopes
         )
     deviation = np.sqrt(variance + law.get("calibration", {}).get("scatter", 0.0) ** 2)
-    deviation = deviation * fitted.get("widening", 1.0)
+    deviation = deviation * half_width(law.get("calibration", {})) / student(math.inf)
     value = np.exp(mean)
     return {
         "predicted": value,
@@ -247,11 +289,12 @@ def _of_law(law: Json, fitted: Json) -> tuple[Floats, dict[str, float], float]:
     if (local and curves) or wear.get("model", "none") not in (
         "none",
         "exponential",
+        "two_stage",
         "power",
     ):
         raise InputError(
             "calibration.not_predicted",
-            "law: curves and other wear than 'exponential' and 'power' are not predicted here",
+            "law: curves and measured wear are not predicted here",
         )
     x = dict(DEFAULTS)
     x["ln_coefficient"] = math.log(law["coefficient_mm2_per_N"])
@@ -261,8 +304,11 @@ def _of_law(law: Json, fitted: Json) -> tuple[Floats, dict[str, float], float]:
         x["pressure_threshold"] = law.get("pressure_threshold_MPa", 0.0)
         if law.get("saturation_pressure_MPa", 0.0) > 0:
             x["ln_saturation"] = math.log(law["saturation_pressure_MPa"])
-    if wear.get("model") == "exponential":
+    if wear.get("model") in ("exponential", "two_stage"):
         x["ln_wear_scale"], x["wear_rest"] = math.log(wear["scale"]), wear.get("rest", 0.0)
+    if wear.get("model") == "two_stage":
+        x["first_share"] = wear["first_share"] / max(1.0 - x["wear_rest"], 1e-12)
+        x["ln_first_ratio"] = math.log(wear["first_scale"] / wear["scale"])
     if wear.get("model") == "power":
         x["ln_wear_scale"], x["wear_exponent"] = (
             math.log(wear["scale"]),

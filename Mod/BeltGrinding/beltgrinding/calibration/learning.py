@@ -37,7 +37,6 @@ LEAST_BLOCKS = 4
 LEAST_ERROR = 1e-3  # mm, of a block's mean: no scan is better
 CAUCHY = 2.385
 ROUNDS, SETTLED = 6, 0.01  # standard deviations before
-QUANTILE = 1.96
 
 
 class Learned(NamedTuple):
@@ -73,7 +72,7 @@ def learn(
         )
     calibration = law["calibration"]
     if scatter is None:
-        scatter = calibration.get("scatter") or SCATTER
+        scatter = calibration.get("widening", 1.0) * calibration.get("scatter", 0.0) or SCATTER
     names, prior = _prior(law, drift)
     inverse, found, before, part = (
         np.linalg.inv(prior),
@@ -96,6 +95,7 @@ def learn(
         "parameters": list(names),
         "covariance": (0.5 * (covariance + covariance.T)).tolist(),
         "scatter": scatter,
+        **({"freedom": calibration["freedom"]} if "freedom" in calibration else {}),
     }
     return Learned(
         corrected,
@@ -230,7 +230,9 @@ def _prior(law: Json, drift: float) -> tuple[list[str], Floats]:
     if COEFFICIENT not in names:
         sizes[COEFFICIENT] = UNKNOWN[COEFFICIENT]
     whole = np.zeros([len(names) + len(sizes)] * 2)
-    whole[: len(kept), : len(kept)] = covariance[np.ix_(kept, kept)] if kept else 0.0
+    whole[: len(kept), : len(kept)] = (
+        covariance[np.ix_(kept, kept)] * calibration.get("widening", 1.0) ** 2 if kept else 0.0
+    )
     for k, (name, size) in enumerate(sizes.items(), len(kept)):
         names.append(name)
         whole[k, k] = size**2
@@ -269,7 +271,8 @@ def _value(law: Json, name: str) -> float:
 
 
 def _interval(law: Json, name: str, variance: float) -> list[float]:
-    value, half = _value(law, name), QUANTILE * math.sqrt(max(variance, 0.0))
+    quantile = float(core.student_quantile(0.975, laws.freedom(law)))
+    value, half = _value(law, name), quantile * math.sqrt(max(variance, 0.0))
     if name in (COEFFICIENT, WEAR):
         return [value * math.exp(-half), value * math.exp(half)]
     return [value - half, value + half]

@@ -19,7 +19,6 @@ CAUCHY = 2.385  # 95 % efficient under normal scatter
 ITERATIONS = 100
 LEAST_SAMPLES = 10
 LEAST_DEPTH = 0.05  # of the greatest: samples ground less say nothing of the coefficient
-QUANTILE = 1.96
 
 
 def calibrate_from_scan(
@@ -39,10 +38,10 @@ def calibrate_from_scan(
     force, so that (simulated + removed - measured) = scale removed - offset; a Cauchy-weighted
     regression finds the scale, and with ``offset`` by how many mm the scan lies too high on the
     whole part. Neighbouring samples err together: the interval is that of whole blocks of
-    ``block_mm`` of ``points`` (n, 3), mm (without points: of runs of samples), by a cluster-robust
+    ``block_mm`` of ``points`` (n, 3), mm (without points: of runs of samples), Student's t by a cluster-robust
     sandwich (Liang and Zeger, Biometrika 73, 1986). Where the scale is far from 1, simulate with
     the new coefficient and repeat. Returns dict(coefficient, interval (2,) of 95 %, scale,
-    ln_scale, ln_deviation, offset_mm, offset_interval_mm, scatter_mm, samples). Raises InputError.
+    ln_scale, ln_deviation, freedom (of Student's t, whose scale that is), offset_mm, offset_interval_mm, scatter_mm, samples). Raises InputError.
     """
     measured, simulated, removed = (
         np.asarray(values, dtype=float).ravel()
@@ -89,13 +88,16 @@ def calibrate_from_scan(
         )
     error = math.sqrt(covariance[0, 0]) / scale
     shift = float(found[1]) if offset else 0.0
-    half = QUANTILE * math.sqrt(covariance[1, 1]) if offset else 0.0
+    freedom = max(count - design.shape[1], 1)
+    quantile = float(core.student_quantile(0.975, freedom))
+    half = quantile * math.sqrt(covariance[1, 1]) if offset else 0.0
     return {
         "coefficient": coefficient * scale,
-        "interval": [coefficient * scale * math.exp(f * QUANTILE * error) for f in (-1.0, 1.0)],
+        "interval": [coefficient * scale * math.exp(f * quantile * error) for f in (-1.0, 1.0)],
         "scale": scale,
         "ln_scale": math.log(scale),
         "ln_deviation": error,
+        "freedom": freedom,
         "offset_mm": shift,
         "offset_interval_mm": [shift - half, shift + half],
         "scatter_mm": float(scatter),
@@ -170,6 +172,7 @@ def from_files(
             "parameters": ["coefficient"],
             "covariance": [[figures["ln_deviation"] ** 2]],
             "scatter": 0.0,
+            "freedom": figures["freedom"],
         },
     }
     return law, figures

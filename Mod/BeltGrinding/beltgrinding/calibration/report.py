@@ -10,7 +10,7 @@ import numpy as np
 
 from ..base.kinds import Facts, Floats, Json
 from . import model as c
-from .law import LAW_NAMES, student, widening
+from .law import LAW_NAMES, freedom, student, widening
 
 if TYPE_CHECKING:
     from .model import Model
@@ -38,7 +38,8 @@ def report(model: Model, found: Json, free: Sequence[str], warnings: Facts) -> d
     covariance = found["covariance"][np.ix_(at, at)]
     deviation = np.sqrt(
         np.einsum("ni,ij,nj->n", slopes, covariance, slopes) + area_variance + found["scatter"] ** 2
-    ) * widening(model, found, free)
+    )
+    deviation *= widening(model, found, free) * student(freedom(model, free)) / student(math.inf)
     left = left_out(model, free, found)
     relative = np.abs(np.expm1(left - truth))
     total = float(np.square(truth - truth.mean()).sum())
@@ -141,11 +142,13 @@ SHOWN = {  # name in the report, unit
     "ln_saturation": ("saturation_pressure", "MPa"),
     "grit_exponent": ("grit_exponent", ""),
     "cut_exponent": ("cut_exponent", ""),
+    "first_share": ("break_in_share", ""),
+    "ln_first_ratio": ("break_in_scale_ratio", ""),
 }
 
 
 def _parameters(model: Model, found: Json, free: Sequence[str]) -> list[dict[str, Any]]:
-    quantile = student(len(model.table.measured) - len(free))
+    quantile = student(freedom(model, free))
     rows = []
     for name, k in c.INDEX.items():
         value = float(found["parameters"][k])

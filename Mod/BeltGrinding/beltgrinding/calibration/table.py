@@ -88,6 +88,7 @@ class Table(NamedTuple):
     spread: Floats  # mm2: 1 for volumes, nan for depths over the contact area
     measured: Floats  # mm3 or mm; nan where only a prediction is asked for
     notes: list[Any]  # texts for the user
+    nominal_area: bool = False  # whether `area` stands for areas that nobody knows
 
     def take(self, index: Array) -> Table:
         """The rows of ``index``, a mask or an array of places."""
@@ -511,7 +512,7 @@ def with_areas(table: Table) -> Table:
                 area=nominal,
             )
         )
-        return table._replace(area=np.full(len(unknown), nominal))
+        return table._replace(area=np.full(len(unknown), nominal), nominal_area=True)
     if unknown.any():
         table.notes.append(
             core.Fact(

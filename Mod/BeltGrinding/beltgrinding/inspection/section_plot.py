@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.kinds import Array, Floats, Json
-from ..engine import InputError
+from ..engine import InputError, core
 from . import edge_profile
 
 UNROLLED, SHAPE = "unrolled", "shape"
 SHARE = 0.12  # of the outline's extent that the enlarged heights take
-SURE = 1.96  # standard deviations: 95 % of a normal distribution
+SURE = 0.95  # of what may be lies in the band
 # Told apart by the colour-blind: blue against orange, and dashes.
 LOOKS = {
     "tolerance": ("tolerance", "#c3d3c3", 0.0, ()),
@@ -93,6 +93,7 @@ def plot(section: Json, mode: str = UNROLLED, exaggeration: float | None = None)
         return (piece["point"] + factor * height[:, None] * piece["ray"]) @ axes
 
     lower, upper = section["tolerance"]
+    half = float(core.student_quantile(0.5 + 0.5 * SURE, section["sd_freedom"]))
     lines: dict[str, list[Floats]] = {key: [] for key in LOOKS}
     ground = []
     for piece in section["pieces"]:
@@ -102,7 +103,7 @@ def plot(section: Json, mode: str = UNROLLED, exaggeration: float | None = None)
         ground.append(place(piece, piece["height"]))
         lines["ground"] += _runs(ground[-1])
         if "height_sd" in piece:
-            band = SURE * piece["height_sd"]
+            band = half * piece["height_sd"]
             low, high = place(piece, piece["height"] - band), place(piece, piece["height"] + band)
             known = ~np.isnan(low[:, 0] + low[:, 1])
             for a, b in _spans(known):

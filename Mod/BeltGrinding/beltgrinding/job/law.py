@@ -22,12 +22,37 @@ MOST_LN = 700.0  # of what a number can hold
 EXPONENTS = ("pressure_exponent", "speed_exponent", "feed_exponent")
 
 
+SEED = 1
 ROUNDING = 1e-6  # of correlations
 MOST_DEVIATION = 10.0  # of ln K, or of an exponent
 COEFFICIENT = "coefficient"  # a calibration's name of it: it stands for its logarithm
 CALIBRATED = tuple(
     dict.fromkeys([COEFFICIENT, *EXPONENTS, *core.GRIND_PARAMETERS])
 )  # what one may know of
+Shift = tuple[tuple[str, ...], bool, float, float]  # keys, whether by a logarithm, least, most
+SHIFTS: dict[str, Shift] = {
+    COEFFICIENT: (("coefficient_mm2_per_N",), True, 0.0, math.inf),
+    **{name: ((name,), False, -math.inf, math.inf) for name in EXPONENTS},
+    "pressure_threshold": (("pressure_threshold_MPa",), False, 0.0, math.inf),
+    "ln_saturation": (("saturation_pressure_MPa",), True, 0.0, math.inf),
+}
+WEAR_REST: Shift = (("rest",), False, 0.0, 1.0)
+WEAR_SHIFTS: dict[str, dict[str, Shift]] = {  # by the wear's model
+    "none": {},
+    "curve": {},
+    "exponential": {"ln_wear_scale": (("scale",), True, 0.0, math.inf), "wear_rest": WEAR_REST},
+    "two_stage": {
+        "ln_wear_scale": (("scale", "first_scale"), True, 0.0, math.inf),
+        "wear_rest": WEAR_REST,
+        "first_share": (("first_share",), False, 0.0, 1.0),
+        "ln_first_ratio": (("first_scale",), True, 0.0, math.inf),
+    },
+    "power": {
+        "ln_wear_scale": (("scale",), True, 0.0, math.inf),
+        "wear_exponent": (("exponent",), False, 0.0, 10.0),
+    },
+}
+MOVED = {name for shifts in (SHIFTS, *WEAR_SHIFTS.values()) for name in shifts}
 
 
 def engine_wear(law: Json | Law) -> Wear:
@@ -80,28 +105,80 @@ def write_belt(path: Path | str, belt: Json) -> None:
         raise cannot_be_written(path, error) from None
 
 
+def freedom(law: Json | Law) -> float:
+    """Degrees of freedom of Student's t whose scales the steps of ``shifted_laws`` are; inf: they are normal."""
+    plain: Json = records.plain(law)
+    return float(plain["calibration"].get("freedom", math.inf))
+
+
 def shifted_laws(law: Json | Law) -> list[Law]:
     """Laws, each a standard deviation off along one of the directions in which a calibrated
-    law is uncertain: the principal axes of its parameters' covariance, and the scatter of one grind.
-    Their effects are independent. Empty for a law that was not calibrated. Raises InputError.
+    law is uncertain: the principal axes of its parameters' covariance, those of the wear among them, and the scatter of
+    one grind. Their effects are uncorrelated: independent normals, or together Student's t (``freedom``). Empty for a
+    law that was not calibrated. Raises InputError.
     """
     plain: Json = records.plain(law)
     if not plain["calibration"] or plain["model"] == "geometric":
         return []
     base, laws = records.made(Law, law), []
     for step in _steps(plain["calibration"]):
-        changed: dict[str, float] = {}
-        for name, by in step.items():
-            if name == COEFFICIENT:
-                changed["coefficient_mm2_per_N"] = base.coefficient_mm2_per_N * math.exp(
-                    min(by, MOST_LN)
-                )
-            elif base.model == "local":  # the others know no exponents
-                changed[name] = getattr(base, name) + by
-        shifted = replace(base, **changed)
+        shifted = _shifted(base, step)
         if shifted != base:
             laws.append(shifted)
     return laws
+
+
+def drawn_wears(law: Json | Law, count: int) -> list[Wear]:
+    """``count`` wears as a calibrated law says that they may be, drawn at random, the same at every call; empty where the
+    law does not say. Raises InputError."""
+    plain: Json = records.plain(law)
+    calibration, base = plain["calibration"], engine_wear(law)
+    check_calibration(calibration)
+    shifts = WEAR_SHIFTS[base.model]
+    names = [name for name in calibration.get("parameters", []) if name in shifts]
+    if not names:
+        return []
+    at = [calibration["parameters"].index(name) for name in names]
+    covariance = np.array(calibration["covariance"], dtype=float)[np.ix_(at, at)]
+    variances, axes = np.linalg.eigh(0.5 * (covariance + covariance.T))
+    random, degrees = np.random.default_rng(SEED), freedom(law)
+    numbers = random.standard_normal((count, len(names)))
+    if math.isfinite(degrees):
+        numbers *= np.sqrt(degrees / random.chisquare(degrees, (count, 1)))
+    steps = numbers * np.sqrt(np.maximum(variances, 0.0)) @ axes.T
+    steps *= float(calibration.get("widening", 1.0))
+    moved = (_changed(base, shifts, dict(zip(names, step)), 1.0)[0] for step in steps.tolist())
+    return [replace(base, **one) for one in moved]
+
+
+def _shifted(law: Law, step: dict[str, float]) -> Law:
+    """A law moved by a step; by the opposite one, which says the same, where that leaves what a law can be."""
+    own = SHIFTS if law.model == "local" else {COEFFICIENT: SHIFTS[COEFFICIENT]}
+    sign, changed, worn = 1.0, dict[str, float](), dict[str, float]()
+    for sign in (1.0, -1.0):
+        changed, inside = _changed(law, own, step, sign)
+        worn, kept = _changed(law.wear, WEAR_SHIFTS[law.wear.model], step, sign)
+        if inside and kept:
+            break
+    return replace(law, **changed, wear=replace(law.wear, **worn))
+
+
+def _changed(
+    record: Law | Wear, shifts: dict[str, Shift], step: dict[str, float], sign: float
+) -> tuple[dict[str, float], bool]:
+    """(values by key of a record moved by a step, whether all stay within their bounds); kept within them."""
+    changed, inside = dict[str, float](), True
+    for name, (keys, logarithm, least, most) in shifts.items():
+        for key in keys if step.get(name) else ():
+            value, by = changed.get(key, getattr(record, key)), sign * step[name]
+            moved = value * math.exp(min(by, MOST_LN)) if logarithm else value + by
+            changed[key] = min(max(moved, least), most)
+            inside = inside and least <= moved <= most
+    if "first_share" in shifts and changed:  # both are shares of the same cut
+        rest, first = (changed.get(key, getattr(record, key)) for key in ("rest", "first_share"))
+        changed["first_share"] = min(first, 1.0 - rest)
+        inside = inside and first + rest <= 1.0
+    return changed, inside
 
 
 def check_calibration(calibration: Json, key: str = "law.calibration") -> None:
@@ -168,14 +245,15 @@ def check_calibration(calibration: Json, key: str = "law.calibration") -> None:
 def _steps(calibration: Json) -> list[dict[str, float]]:
     check_calibration(calibration)
     names = calibration.get("parameters", [])
-    steps = [{COEFFICIENT: float(calibration.get("scatter", 0.0))}]
-    # Of wear and other parameters the engine is told nothing: the rest's own covariance.
-    known = [i for i, name in enumerate(names) if name in (COEFFICIENT, *EXPONENTS)]
+    wide = float(calibration.get("widening", 1.0))
+    steps = [{COEFFICIENT: wide * float(calibration.get("scatter", 0.0))}]
+    # Of times and areas the engine is told nothing: the rest's own covariance.
+    known = [i for i, name in enumerate(names) if name in MOVED]
     if known:
         covariance = np.array(calibration["covariance"], dtype=float)[np.ix_(known, known)]
         variances, axes = np.linalg.eigh(0.5 * (covariance + covariance.T))
         for variance, axis in zip(variances, axes.T):
-            by = math.sqrt(max(variance, 0.0)) * axis
+            by = wide * math.sqrt(max(variance, 0.0)) * axis
             steps.append({names[i]: float(value) for i, value in zip(known, by)})
     return steps
 

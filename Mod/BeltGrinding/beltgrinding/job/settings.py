@@ -225,6 +225,8 @@ class Calibration:
     parameters: tuple[str, ...] | None = None
     covariance: tuple[tuple[float, ...], ...] | None = None
     scatter: float | None = None
+    freedom: float | None = None
+    widening: float | None = None
     fit: Mapping[str, Any] | None = None
 
 

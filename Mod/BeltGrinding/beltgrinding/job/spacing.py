@@ -27,6 +27,8 @@ COARSEST = 0.5  # mm, of a spacing that is chosen
 FINEST = 0.01
 SAMPLES_A_CELL = 1.5  # of the contact's grid, at least, each way
 CELL_ON_EDGE = 0.75  # of an edge's radius: cells with which force and removal there are within 10 %
+LEAST_SHARE_OF_CELL = 0.06  # of a cell that a face covers, to bear pressure
+WANTED_CELL = 4.0  # of a face's width, for its cells
 ACROSS_CONTACT, ACROSS_FACE = 12, 4  # spacings, of a spacing that is chosen
 LEAST_ACROSS_CONTACT, LEAST_ACROSS_FACE = 6, 3  # fewer are warned of
 CHORD = 0.1  # of the tolerance's band: between the surface and the chord from sample to sample
@@ -228,6 +230,27 @@ def warnings(job: Job | Json, seen: Json, spacing: float) -> Facts:
             )
         )
     return found
+
+
+def unseen(job: Job | Json, shape: core.Shape, context: Context = None) -> InputError | None:
+    """Why a wheel at the part touches nothing: a face that is far narrower than the contact's cells; None: another cause."""
+    job = typed(job)
+    cell = max(job.belt_machine.contact_spacing_mm, SAMPLES_A_CELL * job.sampling.spacing_mm)
+    seen = look(
+        job, shape, [face - 1 for face in job.design.faces] or range(shape.face_count), context
+    )
+    if seen["width"] > LEAST_SHARE_OF_CELL * cell:
+        return None
+    return InputError(
+        "job.narrower_than_cells",
+        "the wheel touches nothing: Face{face} is {width:.3g} mm wide, less than cells of {cell:.3g} mm show; take "
+        "{wanted:.2g} mm or less for belt_machine.contact_spacing_mm, and {samples:.2g} mm for sampling.spacing_mm",
+        face=seen["narrow"],
+        width=seen["width"],
+        cell=cell,
+        wanted=WANTED_CELL * seen["width"],
+        samples=WANTED_CELL * seen["width"] / SAMPLES_A_CELL,
+    )
 
 
 def doubted_by(job: Job | Json) -> tuple[float, str] | None:

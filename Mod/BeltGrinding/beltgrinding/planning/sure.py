@@ -2,13 +2,14 @@
 
 A calibrated law knows how unsure it is of itself, and a simulation gives, sample by sample, how much more a law would
 remove that is a standard deviation off along one of the independent directions in which it is unsure. Any law drawn
-from them leaves, at first order, the height less the sum of those, each times a standard normal number; a raw part
-that lies beside where it should has its surface off by its normal times the error.
+from them leaves, at first order, the height less the sum of those, each times a standard normal number, and all of them
+times one factor where few grinds told how large they are (Student's t). A raw part that lies beside where it should has
+its surface off by its normal times the error.
 """
 
 from __future__ import annotations
 
-from statistics import NormalDist
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -49,18 +50,15 @@ def seen_areas(field: core.HeightField) -> Floats:
     return np.where(seen, np.asarray(field.areas, dtype=float), 0.0)
 
 
-def deviation(result: Result, settings: Json) -> Floats:
-    """(samples,) mm: the height's standard deviation."""
-    found = settings["placement_sd_mm"] ** 2 + (np.asarray(result.shifts) ** 2).sum(axis=1)
-    return np.sqrt(found)
-
-
 def band(result: Result, settings: Json, half: Floats) -> Floats:
     """(samples,) mm: half of the tolerance's band, ``half``, less what is unsure."""
     if not settings["probability"]:
         return half
-    by = NormalDist().inv_cdf(max(settings["probability"], 0.5))
-    return np.maximum(half - by * deviation(result, settings), LEAST_BAND * half)
+    freedoms = [laws.freedom(result.job["law"]), math.inf]
+    of_law, of_place = core.student_quantile(max(settings["probability"], 0.5), freedoms)
+    variance = (np.asarray(result.shifts) ** 2).sum(axis=1)
+    by = np.sqrt(of_law**2 * variance + (of_place * settings["placement_sd_mm"]) ** 2)
+    return np.maximum(half - by, LEAST_BAND * half)
 
 
 def drawn(result: Result, settings: Json, height: Floats | None = None) -> Floats:
@@ -73,7 +71,10 @@ def drawn(result: Result, settings: Json, height: Floats | None = None) -> Float
     weight = seen_areas(field)
     normals = np.asarray(field.normals, dtype=float)
     by_law = np.asarray(result.shifts)
-    numbers = np.random.default_rng(SEED).standard_normal((by_law.shape[1] + 3, DRAWN))
+    random, freedom = np.random.default_rng(SEED), laws.freedom(result.job["law"])
+    numbers = random.standard_normal((by_law.shape[1] + 3, DRAWN))
+    if math.isfinite(freedom):
+        numbers[:-3] *= np.sqrt(freedom / random.chisquare(freedom, DRAWN))
     numbers[-3:] *= settings["placement_sd_mm"]
     share = np.zeros(DRAWN)
     for begin in range(0, field.size, CHUNK):

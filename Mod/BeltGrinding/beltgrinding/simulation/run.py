@@ -26,6 +26,7 @@ from . import finish, heat, idle, last_door
 from .checkpoints import RunCheckpoints
 from .result import Result
 
+NEVER_TOUCHES = "simulation.never_touches"  # the core's code of it
 NOTES = 3  # warnings shown behind an error
 
 
@@ -183,7 +184,11 @@ def _run(
     phases.end("hash")
     found, process_time, lost, models = [], 0.0, 0.0, {}
     steps: dict[str, Array] = {}
+    touched: list[bool] = []
     for i, path in enumerate(paths):
+        # Programs that miss the part are told; where all do, there is nothing to show.
+        last = len(touched) == len(paths) - 1 and not any(touched)
+        given = replace(given, must_touch=last)
         share = 0.7 / len(paths)
         part = context.part(0.3 + i * share, 0.3 + (i + 1) * share)
         try:
@@ -192,10 +197,13 @@ def _run(
             checkpoints.keep()
             raise
         except InputError as error:
+            if error.code == NEVER_TOUCHES:
+                error = spacing.unseen(job, shape, context.part(0.0, 0.0)) or error
             raise error.within(
                 "job.in_program", "{program}: ", program=program_name(job, i)
             ) from None
         checkpoints.ended(result)
+        touched.append(result["touched"])
         lists = [one[i]["events"] for one in (reached, met) if one]
         lists.append(gaps.events(path, left_out[i]))
         found.append((i, process_time, sum(lists, result["events"])))
@@ -215,11 +223,12 @@ def _run(
         for name, seconds in result["wall"].items():
             phases.seconds[name] = phases.seconds.get(name, 0.0) + seconds
     checkpoints.keep()
+    warnings += _missing(job, touched)
     belt = given.belt
     assert belt is not None  # a job has a program
     phases.restart()
     if shifts.shape[1]:
-        field.set_height_sd(np.sqrt((shifts**2).sum(axis=1)))
+        field.set_height_sd(np.sqrt((shifts**2).sum(axis=1)), laws.freedom(job.law))
     events = event_lists.merge(found)
     summary = summarise(job, field, events)
     phases.end("inspect")
@@ -250,6 +259,20 @@ def _run(
     last_door.check(done)
     phases.end("verdict")
     return done, shifts
+
+
+def _missing(job: Job, touched: Sequence[bool]) -> Facts:
+    """Facts of the programs whose wheel has not met the stock."""
+    return [
+        core.Fact(
+            "job.program_misses",
+            "{program}: the wheel never touches the stock, and the program grinds nothing; check its frame and work "
+            "object, and its place on the part",
+            program=program_name(job, i),
+        )
+        for i, one in enumerate(touched)
+        if not one
+    ]
 
 
 def _speed_effects(given: engine_input.EngineInput) -> dict[str, float]:

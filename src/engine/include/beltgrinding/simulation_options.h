@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -160,6 +161,12 @@ struct FinishRequest {
     void validate() const;
 };
 
+/// A law, and how the belt's cut falls under it.
+struct ShiftedLaw {
+    std::shared_ptr<const RemovalLaw> law;  ///< moved
+    std::optional<BeltWear> wear = {};      ///< none: as the simulation's
+};
+
 /// What a simulation keeps besides the heights and the time series.
 struct OutputRequest {
     bool trace = true;  ///< keep `field.trace`; without, what it holds is dropped
@@ -168,7 +175,7 @@ struct OutputRequest {
     Recording* recording = nullptr;  ///< goes on with this path; cleared on cancel or error
     /// The law, moved by one standard deviation along each direction in which it is uncertain: for
     /// `SimulationResult::shifts`.
-    std::vector<std::shared_ptr<const RemovalLaw>> shifted_laws = {};
+    std::vector<ShiftedLaw> shifted_laws = {};
     bool influence = false;  ///< keep what every motion removed where
     /// Keep what every motion would remove more where by more force, as far as its force is
     /// controlled.
@@ -239,6 +246,7 @@ struct SimulationResult {
     std::string model;        ///< what the contact model says of itself as it was used
     PhaseTimes wall;          ///< of this call
     std::size_t resumed = 0;  ///< of `steps`: those that were taken from a checkpoint
+    bool touched = false;     ///< the wheel met the stock
     bool unchanged = false;   ///< all is as in the simulation that the checkpoints were of
 
     /// mm3 of the law's, that was taken from no sample.

@@ -46,7 +46,8 @@ struct Removal {
     const Eigen::ArrayXd& beside;  ///< mm/s beyond the side faces
     const Eigen::ArrayXd& most;    ///< mm/s per cell, that was left to remove
     const Eigen::ArrayXd& most_beside;
-    double duration;  ///< s
+    double duration;        ///< s
+    const BeltState& belt;  ///< at its begin
 };
 
 /// A step is over.

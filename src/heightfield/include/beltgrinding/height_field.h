@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -122,6 +123,8 @@ struct HeightField {
     PackedTriangles triangles;        ///< between samples, for display; never across faces
     double spacing = 0.0;             ///< nominal distance between neighbouring samples, mm
     double depth = 1.0;               ///< how far below the design surface a segment begins, mm
+    /// Degrees of freedom of Student's t whose scales `height_sd` are; infinite: they are normal.
+    double sd_freedom = std::numeric_limits<double>::infinity();
 
     /// Number of samples.
     std::size_t size() const { return point.size(); }

@@ -21,6 +21,8 @@ enum GrindParameter : int {
     kWearExponent,       ///< m of a cut that falls as (1 + W / scale)^-m; inf: exponentially
     kGritExponent,       ///< a, of the grain's number or size; 0 where it is not known
     kCutExponent,        ///< f, of the share of a fresh belt's cut that remains; 0 likewise
+    kFirstShare,    ///< of what an exponential wear takes, the share that goes first (break-in)
+    kLnFirstRatio,  ///< ln of that stage's wear scale over the other's, below 0
     kGrindParameters,
 };
 using GrindVector = Eigen::Matrix<double, kGrindParameters, 1>;
@@ -95,8 +97,9 @@ struct Calibration {
 /// area is one of `areas`, by Ibrahim's EM by the method of weights (JASA 85, 1990). The covariance
 /// is the sandwich of M-estimation (Huber and Ronchetti, Robust Statistics, 2009) with Louis's
 /// information where areas are unknown (JRSS B 44, 1982) and MacKinnon and White's leverage
-/// correction HC3 (J. Econometrics 29, 1985); a prior counts as a further measurement. Throws
-/// InputError.
+/// correction HC3 (J. Econometrics 29, 1985); with fewer than 6 degrees of freedom, where that is
+/// far too wide, the scatter's variance over the information. A prior counts as a further
+/// measurement. Throws InputError.
 Calibration calibrate(const MeasuredGrinds& grinds, const GrindReferences& references,
                       const CalibrationSettings& settings);
 

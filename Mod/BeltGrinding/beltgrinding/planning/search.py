@@ -21,16 +21,16 @@ from ..job.workpiece import read_design
 from ..raster import reach_map
 from . import by_rules, rounds
 from .by_rules import COARSE, QUICK, Move, Tried, Zones
+from .candidates import Seen, candidates, of_further
 from .moves import Moves
 
 BUDGET_S = 120.0
 UNTIL_IT_PAYS = float("inf")  # s: as long as a generation of coarse plans brings GAIN
 OWN_ANGLES, OTHER_ANGLES = (0.0, 90.0, 45.0, 135.0), (0.0, 90.0)  # degrees, of the belt
 FIRST = 16  # coarse plans of a generation
-OF_A_WHEEL = 2  # of them, of each wheel besides the job's own
 LEADERS = 4  # that rules go on from
 FINALS = 3  # full plans
-FAR_BEHIND = 0.1  # of the area: ways on which the wheel gets to so much less are no candidates; passes so far behind get no full plan
+FAR_BEHIND = 0.1  # of the area: passes so far behind get no full plan
 GAIN = 0.005  # of the area
 ENOUGH = 0.995  # of the area: nothing else is tried
 COARSE_UNTIL, RULES_UNTIL = 0.4, 0.65  # of the budget
@@ -71,13 +71,6 @@ class Found(NamedTuple):
         """As JSON has it."""
         kept = ("geometry", "wheels", "reachable", "reachable_by_any", "seconds", "through")
         return {"tried": self.rows, **{name: getattr(self, name) for name in kept}}
-
-
-class Seen(NamedTuple):
-    """A wheel, and what the geometry says of it."""
-
-    machine: Json  # the job's belt machine with it
-    map: reach_map.Map
 
 
 def alone(function: Callable[..., Any], *arguments: Any) -> Any:
@@ -152,7 +145,7 @@ class _Run:
     def found(self) -> Found:
         own, others, further = self._looked()
         start: Move = ("first", self.data["belt_machine"], self.first)
-        default, coarse = self._coarse(start, candidates(own, others, start))
+        default, coarse = self._coarse(start, candidates(own, others, start, self.search.fixed))
         mine = [one for one in coarse if one.machine["wheel"] == own.machine["wheel"]]
         wheels = self._brought(further, own, mine)
         best, its_rounds = self._finals(default, self._ruled(default, coarse))
@@ -163,9 +156,10 @@ class _Run:
             rows=self.rows,
             geometry=[_geometry(one, reach) for one in (own, *others) for reach in one.map.found],
             wheels=wheels,
-            reachable=max(float(own.map.fits.mean()), _most(own)),
+            reachable=max(float(own.map.fits.mean()), own.most),
             reachable_by_any=max(
-                float(np.logical_or.reduce(fits).mean()), *map(_most, (own, *others, *further))
+                float(np.logical_or.reduce(fits).mean()),
+                *(one.most for one in (own, *others, *further)),
             ),
             seconds=time.monotonic() - self.begun,
             through=self.through,
@@ -273,30 +267,21 @@ class _Run:
         """What further wheels would bring: those that get to more are planned coarsely, as the own one was."""
         if not further:
             return []
-        most = _most(own)
-        ahead = sorted(
-            (one for one in further if _most(one) > most + GAIN), key=lambda one: -_most(one)
-        )
-        ahead = ahead[:FURTHER]
-        moves = [ranked(one, self.first)[0][1] for one in ahead]
-        calls = [self._call(by_rules.attempt, m, self.settings, COARSE, self.zones) for m in moves]
-        values = (
-            self._run(calls, RULES_UNTIL, (0.4, 0.5)) if calls and mine else [None] * len(ahead)
-        )
-        planned = {id(one): value for one, value in zip(ahead, values)}
-        told = []
-        for one in further:
-            value = planned.get(id(one))
-            share = None if value is None else value.in_tolerance
-            told.append(
-                {
-                    "wheel": _size(one.machine),
-                    "reachable": _most(one),
-                    "in_tolerance": share,
-                    "gain": None if share is None else share - mine[0].in_tolerance,
-                }
-            )
-        return told
+        start: Move = ("first", own.machine, self.first)
+        ahead = [one for one in further if one.most > own.most + GAIN] if mine else []
+        ahead = sorted(ahead, key=lambda one: -one.most)[:FURTHER]
+        calls, owner = [], []
+        for number, one in enumerate(ahead):
+            for move in of_further(one, start, self.search.fixed, mine[0]):
+                calls.append(self._call(by_rules.attempt, move, self.settings, COARSE, self.zones))
+                owner.append(number)
+        values = self._run(calls, RULES_UNTIL, (0.4, 0.5))
+        shares: dict[int, float] = {}
+        for number, value in zip(owner, values):
+            if value is not None:
+                key = id(ahead[number])
+                shares[key] = max(shares.get(key, 0.0), value.in_tolerance)
+        return [_brings(one, shares.get(id(one)), mine) for one in further]
 
     def _ruled(self, default: Tried | None, coarse: list[Tried]) -> list[Tried]:
         """What the rules find from the best, best first, and what they began with."""
@@ -354,45 +339,21 @@ def _same(one: Tried, other: Tried) -> bool:
     return one.machine == other.machine and one.wanted == other.wanted
 
 
-def _most(one: Seen) -> float:
-    return max((reach.share for reach in one.map.found), default=0.0)
-
-
-def _size(machine: Json) -> dict[str, float]:
-    return {name: machine["wheel"][name] for name in ("radius_mm", "width_mm", "crown_radius_mm")}
+def _brings(one: Seen, share: float | None, mine: list[Tried]) -> dict[str, Any]:
+    return {
+        "wheel": one.size,
+        "reachable": one.most,
+        "in_tolerance": share,
+        "gain": None if share is None else share - mine[0].in_tolerance,
+    }
 
 
 def _geometry(one: Seen, reach: reach_map.Reach) -> dict[str, Any]:
     return {
-        "wheel": _size(one.machine),
+        "wheel": one.size,
         "along": reach.way["along"],
         "direction": list(reach.way.get("direction", [])),
         "belt_angle_deg": reach.belt_angle_deg,
         "reachable": reach.share,
         "upright": reach.upright,
     }
-
-
-def candidates(own: Seen, others: Sequence[Seen], start: Move) -> list[Move]:
-    """In the order of their promise: the job's own wheel on the ways and with the belt angles on which it gets to most, and between
-    them the best of each other wheel."""
-    mine = ranked(own, start[2])
-    theirs = [pair for other in others for pair in ranked(other, start[2])[:OF_A_WHEEL]]
-    theirs.sort(key=lambda pair: -round(pair[0], 2))
-    most = max([share for share, _ in [*mine, *theirs]], default=0.0)
-    mine = [pair for pair in mine if pair[0] >= mine[0][0] - FAR_BEHIND]
-    theirs = [pair for pair in theirs if pair[0] >= most - FAR_BEHIND]
-    found = []
-    for k in range(max(len(mine), len(theirs))):
-        found += [move for _, move in [*mine[k : k + 1], *theirs[k : k + 1]]]
-    return [move for move in found if move[1:] != start[1:]]
-
-
-def ranked(one: Seen, wanted: Json) -> list[tuple[float, Move]]:
-    """[(of the area, that the wheel gets to, Move)], the most first, where it need not lean counts double; of equals as they come."""
-    found = sorted(one.map.found, key=lambda reach: -round(reach.share + reach.upright, 2))
-    moves: list[tuple[float, Move]] = []
-    for reach in found:
-        changed = {**wanted, **reach.way, "belt_angle_deg": reach.belt_angle_deg}
-        moves.append((reach.share, ("way", one.machine, changed)))
-    return moves

@@ -12,6 +12,7 @@ from test_collision import brep
 from test_raster import X, job_of, plate
 
 from beltgrinding.base import frames
+from beltgrinding.cli import robot_program as command
 from beltgrinding.engine import InputError
 from beltgrinding.job import load as jobs, poses
 from beltgrinding.planning import commands, rounds
@@ -245,6 +246,35 @@ def test_what_collides_or_is_out_of_reach_is_not_written(laid, tmp_path):
     with pytest.raises(InputError, match="out of the robot's reach"):
         writing.write(tmp_path / "far.src", cell(far, laid=laid), whole)
     assert not (tmp_path / "far.src").exists()
+
+
+class Said:
+    """The command line's options and messages, as far as a program in place of another needs them."""
+
+    form, unsafe = "spline", False
+
+    def __init__(self):
+        self.messages, self.warnings = self, []
+
+    def print_warnings(self, facts):
+        self.warnings += facts
+
+
+def test_grind_puts_it_in_place_of_the_passes_or_leaves_none(laid, tmp_path):
+    file, said = tmp_path / "raster.src", Said()
+    file.write_text("the passes alone")
+    job = cell(laid=laid)
+    command.in_place_of(file, job, said)
+    text = file.read_text()
+    assert text.count("SPLINE\n") == 2 * len(laid["passes"])  # SPLINE and ENDSPLINE
+    assert text.count("PTP {A1 60,") == 2
+    wanted = np.stack([move.joints_deg for move in writing.plan_job(job).moves])
+    assert np.abs(writing.joints_of_file(file, job) - wanted).max() < 1e-3
+    block = {"name": "block", "frame": "part", "brep": brep([45, 0, 20], [55, 60, 120])}
+    with pytest.raises(InputError, match="raster.src is not written: .*block"):
+        command.in_place_of(file, cell(laid=laid, bodies=[block]), said)
+    assert not file.exists()
+    assert any("block" in str(fact) for fact in said.warnings)
 
 
 def jobs_plain(job):

@@ -364,3 +364,30 @@ def test_roll_is_used_for_the_arms_sake(laid):
         assert a.frame[:3, 1] == pytest.approx(b.frame[:3, 1], abs=1e-9)
         count += np.abs(a.frame[:3, 2] - b.frame[:3, 2]).max() > 1e-3
     assert count
+
+
+def test_a_part_in_hand_is_led_along_a_wheel_that_stands(tmp_path):
+    """The wheel stands before the robot, its contact's z up and towards the robot; a plate at the flange."""
+    robot = {"preset": "kuka_kr6_r900", "program": {"home_joints_deg": [0, -110, 120, 0, 40, 0]}}
+    parts = {
+        "robot": robot,
+        "cell": {
+            "holding": "part_in_hand",
+            "tcp_from_work": {"position_mm": [-50, -30, 20]},
+            "base_from_contact": {"position_mm": [520, 0, 420], "abc_deg": [0, -50, 0]},
+        },
+    }
+    job = job_of(plate(), **parts)
+    laid = raster.raster(job, {**X, "step_over_mm": 20, "feed_mm_s": 40})
+    listed = poses.list_poses(laid)
+    job = {**job, "programs": [{"name": "raster", "poses": listed, "unresolved": 0}]}
+    whole = writing.plan_job(job)
+    assert not whole.problems and whole.figures["passes"] == len(laid["passes"])
+    finer(job, whole)
+    file = tmp_path / "whole.mod"
+    writing.write(file, job, whole)
+    wanted = np.stack([move.joints_deg for move in whole.moves])
+    assert np.abs(writing.joints_of_file(file, job) - wanted).max() < 1e-3
+    of = chain("kuka_kr6_r900", np.eye(4))
+    linear = [move for move in whole.moves if move.kind == "LIN"]
+    assert max(np.abs(forward(of, m.joints_deg) - m.frame).max() for m in linear) < 1e-4

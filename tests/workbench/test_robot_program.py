@@ -391,3 +391,53 @@ def test_a_part_in_hand_is_led_along_a_wheel_that_stands(tmp_path):
     of = chain("kuka_kr6_r900", np.eye(4))
     linear = [move for move in whole.moves if move.kind == "LIN"]
     assert max(np.abs(forward(of, m.joints_deg) - m.frame).max() for m in linear) < 1e-4
+
+
+def turning(turns):
+    """Poses on the plate's middle that turn about its normal by ``turns`` degrees, ten at a time."""
+    rows = []
+    for k, angle in enumerate([0, *range(0, turns + 1, 10), turns]):
+        half = math.radians(angle) / 2.0
+        # Down, after a turn about the normal.
+        quaternion = dict(qw=0.0, qx=math.cos(half), qy=math.sin(half), qz=0.0)
+        ends = k == 0 or k == turns // 10 + 2
+        at = dict(x_mm=50, y_mm=30, z_mm=20 if ends else 0, feed_mm_s=40.0, rapid=k == 0, line=k)
+        rows.append({**quaternion, **at})
+    return rows
+
+
+def test_a_pass_that_no_posture_does_is_cut_and_told(laid):
+    job = cell(laid=laid)
+    job = {**job, "programs": [{"name": "turning", "poses": turning(900), "unresolved": 0}]}
+    whole = writing.plan_job(job)
+    assert not whole.problems
+    cuts = [fact for fact in whole.notes if fact.code == "robot_program.cut"]
+    assert cuts and len(cuts) == whole.figures["cuts"]
+    assert "pass 1 is cut at line" in str(cuts[0])
+    begins = [k for k, move in enumerate(whole.moves) if "another posture" in move.note]
+    assert len(begins) == len(cuts)
+    for k in begins:  # up, over by the joints, down to where it was
+        up, down = whole.moves[k - 1], next(m for m in whole.moves[k:] if m.kind == "LIN")
+        before = whole.moves[k - 2]
+        assert up.kind == "LIN" and up.frame[2, 3] == pytest.approx(before.frame[2, 3] + 30.0)
+        assert np.abs(down.frame - before.frame).max() < 1e-6 and down.feed == 20.0
+        assert np.abs(down.joints_deg - before.joints_deg).max() > 90.0
+    finer(job, whole)
+
+
+def test_a_link_goes_by_a_safe_place_where_no_direct_way_is_found(laid, monkeypatch):
+    safe = [20.0, -100.0, 100.0, 0.0, 60.0, 0.0]
+    direct = wholes.Planner._way
+    home = np.radians(HOME)
+
+    def way(self, begin, end):
+        if (begin == home).all() and not np.allclose(end, np.radians(safe)):
+            return None
+        return direct(self, begin, end)
+
+    monkeypatch.setattr(wholes.Planner, "_way", way)
+    whole = writing.plan_job(cell(laid=laid, safe_joints_deg=[safe]))
+    assert not whole.problems
+    assert whole.moves[1].joints_deg == pytest.approx(safe)
+    whole = writing.plan_job(cell(laid=laid))
+    assert [fact.code for fact in whole.problems] == ["robot_program.no_link"]

@@ -251,13 +251,15 @@ def test_what_collides_or_is_out_of_reach_is_not_written(laid, tmp_path):
 class Said:
     """The command line's options and messages, as far as a program in place of another needs them."""
 
-    form, unsafe = "spline", False
+    form, unsafe, force = "spline", False, False
 
     def __init__(self):
         self.messages, self.warnings = self, []
 
     def print_warnings(self, facts):
         self.warnings += facts
+
+    print_written = print_warnings
 
 
 def test_grind_puts_it_in_place_of_the_passes_or_leaves_none(laid, tmp_path):
@@ -275,6 +277,17 @@ def test_grind_puts_it_in_place_of_the_passes_or_leaves_none(laid, tmp_path):
         command.in_place_of(file, cell(laid=laid, bodies=[block]), said)
     assert not file.exists()
     assert any("block" in str(fact) for fact in said.warnings)
+
+
+def test_a_plan_has_it_beside_its_programs(laid, tmp_path):
+    job = cell(laid=laid)
+    assert command.beside(tmp_path, ["raster.mod"], job, Said()) == tmp_path / "whole_robot.mod"
+    assert "MoveAbsJ [[60,-90,90,0,60,0]" in (tmp_path / "whole_robot.mod").read_text()
+    assert command.beside(tmp_path, ["raster.csv"], job, Said()).suffix == ".src"
+    assert command.beside(tmp_path, [], cell(laid=laid, home_joints_deg=[]), Said()) is None
+    (tmp_path / "whole_robot.src").write_text("of another")
+    with pytest.raises(InputError, match="is there already"):
+        command.beside(tmp_path, [], job, Said())
 
 
 def jobs_plain(job):

@@ -12,6 +12,7 @@ from test_collision import brep
 from test_raster import X, job_of, plate
 
 from beltgrinding.base import frames
+from beltgrinding.cli import robot_program as command
 from beltgrinding.engine import InputError
 from beltgrinding.job import load as jobs, poses
 from beltgrinding.planning import commands, rounds
@@ -247,6 +248,48 @@ def test_what_collides_or_is_out_of_reach_is_not_written(laid, tmp_path):
     assert not (tmp_path / "far.src").exists()
 
 
+class Said:
+    """The command line's options and messages, as far as a program in place of another needs them."""
+
+    form, unsafe, force = "spline", False, False
+
+    def __init__(self):
+        self.messages, self.warnings = self, []
+
+    def print_warnings(self, facts):
+        self.warnings += facts
+
+    print_written = print_warnings
+
+
+def test_grind_puts_it_in_place_of_the_passes_or_leaves_none(laid, tmp_path):
+    file, said = tmp_path / "raster.src", Said()
+    file.write_text("the passes alone")
+    job = cell(laid=laid)
+    command.in_place_of(file, job, said)
+    text = file.read_text()
+    assert text.count("SPLINE\n") == 2 * len(laid["passes"])  # SPLINE and ENDSPLINE
+    assert text.count("PTP {A1 60,") == 2
+    wanted = np.stack([move.joints_deg for move in writing.plan_job(job).moves])
+    assert np.abs(writing.joints_of_file(file, job) - wanted).max() < 1e-3
+    block = {"name": "block", "frame": "part", "brep": brep([45, 0, 20], [55, 60, 120])}
+    with pytest.raises(InputError, match="raster.src is not written: .*block"):
+        command.in_place_of(file, cell(laid=laid, bodies=[block]), said)
+    assert not file.exists()
+    assert any("block" in str(fact) for fact in said.warnings)
+
+
+def test_a_plan_has_it_beside_its_programs(laid, tmp_path):
+    job = cell(laid=laid)
+    assert command.beside(tmp_path, ["raster.mod"], job, Said()) == tmp_path / "whole_robot.mod"
+    assert "MoveAbsJ [[60,-90,90,0,60,0]" in (tmp_path / "whole_robot.mod").read_text()
+    assert command.beside(tmp_path, ["raster.csv"], job, Said()).suffix == ".src"
+    assert command.beside(tmp_path, [], cell(laid=laid, home_joints_deg=[]), Said()) is None
+    (tmp_path / "whole_robot.src").write_text("of another")
+    with pytest.raises(InputError, match="is there already"):
+        command.beside(tmp_path, [], job, Said())
+
+
 def jobs_plain(job):
     """What a job's file has of a validated job."""
     keys = ("design", "robot", "cell", "programs", "belt_machine")
@@ -334,3 +377,80 @@ def test_roll_is_used_for_the_arms_sake(laid):
         assert a.frame[:3, 1] == pytest.approx(b.frame[:3, 1], abs=1e-9)
         count += np.abs(a.frame[:3, 2] - b.frame[:3, 2]).max() > 1e-3
     assert count
+
+
+def test_a_part_in_hand_is_led_along_a_wheel_that_stands(tmp_path):
+    """The wheel stands before the robot, its contact's z up and towards the robot; a plate at the flange."""
+    robot = {"preset": "kuka_kr6_r900", "program": {"home_joints_deg": [0, -110, 120, 0, 40, 0]}}
+    parts = {
+        "robot": robot,
+        "cell": {
+            "holding": "part_in_hand",
+            "tcp_from_work": {"position_mm": [-50, -30, 20]},
+            "base_from_contact": {"position_mm": [520, 0, 420], "abc_deg": [0, -50, 0]},
+        },
+    }
+    job = job_of(plate(), **parts)
+    laid = raster.raster(job, {**X, "step_over_mm": 20, "feed_mm_s": 40})
+    listed = poses.list_poses(laid)
+    job = {**job, "programs": [{"name": "raster", "poses": listed, "unresolved": 0}]}
+    whole = writing.plan_job(job)
+    assert not whole.problems and whole.figures["passes"] == len(laid["passes"])
+    finer(job, whole)
+    file = tmp_path / "whole.mod"
+    writing.write(file, job, whole)
+    wanted = np.stack([move.joints_deg for move in whole.moves])
+    assert np.abs(writing.joints_of_file(file, job) - wanted).max() < 1e-3
+    of = chain("kuka_kr6_r900", np.eye(4))
+    linear = [move for move in whole.moves if move.kind == "LIN"]
+    assert max(np.abs(forward(of, m.joints_deg) - m.frame).max() for m in linear) < 1e-4
+
+
+def turning(turns):
+    """Poses on the plate's middle that turn about its normal by ``turns`` degrees, ten at a time."""
+    rows = []
+    for k, angle in enumerate([0, *range(0, turns + 1, 10), turns]):
+        half = math.radians(angle) / 2.0
+        # Down, after a turn about the normal.
+        quaternion = dict(qw=0.0, qx=math.cos(half), qy=math.sin(half), qz=0.0)
+        ends = k == 0 or k == turns // 10 + 2
+        at = dict(x_mm=50, y_mm=30, z_mm=20 if ends else 0, feed_mm_s=40.0, rapid=k == 0, line=k)
+        rows.append({**quaternion, **at})
+    return rows
+
+
+def test_a_pass_that_no_posture_does_is_cut_and_told(laid):
+    job = cell(laid=laid)
+    job = {**job, "programs": [{"name": "turning", "poses": turning(900), "unresolved": 0}]}
+    whole = writing.plan_job(job)
+    assert not whole.problems
+    cuts = [fact for fact in whole.notes if fact.code == "robot_program.cut"]
+    assert cuts and len(cuts) == whole.figures["cuts"]
+    assert "pass 1 is cut at line" in str(cuts[0])
+    begins = [k for k, move in enumerate(whole.moves) if "another posture" in move.note]
+    assert len(begins) == len(cuts)
+    for k in begins:  # up, over by the joints, down to where it was
+        up, down = whole.moves[k - 1], next(m for m in whole.moves[k:] if m.kind == "LIN")
+        before = whole.moves[k - 2]
+        assert up.kind == "LIN" and up.frame[2, 3] == pytest.approx(before.frame[2, 3] + 30.0)
+        assert np.abs(down.frame - before.frame).max() < 1e-6 and down.feed == 20.0
+        assert np.abs(down.joints_deg - before.joints_deg).max() > 90.0
+    finer(job, whole)
+
+
+def test_a_link_goes_by_a_safe_place_where_no_direct_way_is_found(laid, monkeypatch):
+    safe = [20.0, -100.0, 100.0, 0.0, 60.0, 0.0]
+    direct = wholes.Planner._way
+    home = np.radians(HOME)
+
+    def way(self, begin, end):
+        if (begin == home).all() and not np.allclose(end, np.radians(safe)):
+            return None
+        return direct(self, begin, end)
+
+    monkeypatch.setattr(wholes.Planner, "_way", way)
+    whole = writing.plan_job(cell(laid=laid, safe_joints_deg=[safe]))
+    assert not whole.problems
+    assert whole.moves[1].joints_deg == pytest.approx(safe)
+    whole = writing.plan_job(cell(laid=laid))
+    assert [fact.code for fact in whole.problems] == ["robot_program.no_link"]

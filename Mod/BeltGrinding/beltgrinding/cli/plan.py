@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from . import background, outcome, outputs, plan_batch, rounds_table, settings
+from . import background, outcome, outputs, plan_batch, robot_program, rounds_table, settings
 from .messages import print_text
 
 PLANNING = 0.6  # of the time; the rest reads and simulates what was written
@@ -22,6 +22,7 @@ def add(commands):
         "--set", action="append", default=[], metavar="KEY=VALUE", help="one setting; as JSON"
     )
     plan_batch.add(plan)
+    robot_program.add_unsafe(plan)
     plan.add_argument("-q", "--quiet", action="store_true", help="no progress, no summary")
     outcome.add(plan)
     outputs.add(plan)
@@ -70,11 +71,14 @@ def _plan(arguments):
         found = found if checked is None else checked.plan
         written, warnings = write(found, None if checked is None else checked.entry)
         arguments.messages.print_warnings(warnings)
+        whole = robot_program.beside(folder, written, found.job, arguments)
         tell_checked(arguments, checked)
         if not arguments.quiet:
             print_text(text(plans.summary(found), checked is not None))
             names = ", ".join(written) if written else "poses in job.json"
             print_text(f"programs: {names}; results in {folder}")
+            if whole is not None:
+                print_text(f"program for the whole robot: {whole}")
         outcome.tell(arguments, found.after, wanted["wanted_share"])
         return found, laid
 

@@ -4,6 +4,9 @@ import json
 
 from . import background, frames_options, outputs
 
+NAME = "whole_robot"  # of a plan's program
+LANGUAGES = (".src", ".mod", ".script")  # in which that may be: those that set frames by numbers
+
 
 def add_unsafe(command):
     """The option ``--unsafe`` of a program for the whole robot."""
@@ -76,3 +79,27 @@ def in_place_of(file, job, arguments):
     except InputError:
         file.unlink()
         raise
+
+
+def beside(folder, names, job, arguments):
+    """Writes a plan's program for the whole robot into its folder, as NAME in the language of the programs there
+    (``names``). Returns its file, None for a job without a home. Raises InputError."""
+    from pathlib import Path
+
+    from ..base.files import cannot_be_written
+    from ..robot_program import write as writing
+
+    if not wanted(job):
+        return None
+    suffixes = [Path(name).suffix.lower() for name in names]
+    suffix = next((one for one in suffixes if one in LANGUAGES), LANGUAGES[0])
+    file = Path(folder, NAME + suffix)
+    outputs.check(arguments, [file])
+    whole = background.run(lambda context: writing.plan_job(job, context), quiet=True)
+    arguments.messages.print_warnings([*whole.notes, *whole.problems])
+    try:
+        notes = writing.write(file, job, whole, unsafe=arguments.unsafe)
+    except OSError as error:
+        raise cannot_be_written(file, error) from None
+    arguments.messages.print_written(notes)
+    return file

@@ -7,6 +7,7 @@ EXAMPLES = {
         "grind job.json -o ground --program raster.mod",
         "grind job.json -o ground --check --wanted 95",
         "grind job.json -o ground --set-raster along=v --set rounds=4",
+        "grind job.json -o ground --budget 300",
     ),
     "plan": (
         "plan job.json -o planned",
@@ -49,6 +50,7 @@ EXAMPLES = {
         "program program.src --write-values",
         "program write program.src changes.csv -o new.src",
         "program convert program.src -o program.script",
+        "program robot job.json -o whole.src",
     ),
     "reach": (
         "reach job.json",

@@ -145,6 +145,21 @@ def test_convert_takes_the_form_of_a_controller(tmp_path, capsys):
     assert "KUKA KR C2 knows no spline blocks" in capsys.readouterr().err
 
 
+def test_a_force_that_comes_late_is_told(tmp_path):
+    device = {**DEVICE, "dead_time_s": 0.05}
+    for name, form, late in (
+        ("a.src", "spline", False),
+        ("b.src", "zones", True),
+        ("c.mod", "", True),
+    ):
+        notes = write_program(
+            tmp_path / name, None, motions(FORCES), form=form, force_device=device
+        )
+        assert ("programs.writers.force_late" in [one.code for one in notes]) is late
+    notes = write_program(tmp_path / "d.mod", None, motions(FORCES), force_device=DEVICE)
+    assert "programs.writers.force_late" not in [one.code for one in notes]
+
+
 def test_changes_go_back_through_the_device(tmp_path):
     path, changes = tmp_path / "p.src", tmp_path / "changes.csv"
     write_program(path, None, motions(FORCES), form="spline", force_device=DEVICE)

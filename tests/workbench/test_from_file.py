@@ -99,6 +99,23 @@ def test_forces_that_the_file_does_not_set_are_told_and_planned_without(planned,
     )
 
 
+def test_a_refined_plan_is_not_halved_again(tmp_path):
+    job = tmp_path / "job.json"
+    assert not from_file.is_at_half(job)
+    for told, half in (
+        ({"half": True}, True),
+        ({"half": False}, False),
+        ({}, False),
+        (None, False),
+    ):
+        (tmp_path / "plan.json").write_text(json.dumps({"from_file": told}))
+        assert from_file.is_at_half(job) is half
+    (tmp_path / "plan.json").write_text('{"from_file": {"half": true}}')
+    assert not from_file.is_at_half(tmp_path / "other.json")  # no plan has written that
+    (tmp_path / "plan.json").write_text("[1]")
+    assert not from_file.is_at_half(job)
+
+
 def test_what_a_short_block_reaches():
     """10 mm from standstill to standstill at 1000 mm/s2: up to 100 mm/s, on the mean 50, in 0.2 s."""
     ends = [

@@ -44,7 +44,9 @@ def _verify(arguments):
             said.extend(warnings)
 
     def work(context):
-        return runs.run(from_file.at_half(given, context), context, early=early, resume=False)
+        half = from_file.is_at_half(arguments.job)  # a plan has refined it already
+        fine = given if half else from_file.at_half(given, context)
+        return runs.run(fine, context, early=early, resume=False)
 
     result = background.run(work, arguments.quiet)
     if arguments.output:

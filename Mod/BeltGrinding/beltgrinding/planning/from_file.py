@@ -7,6 +7,7 @@ reasons, and the plan goes on from there, once: with the forces that the file ha
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -59,6 +60,7 @@ class _Read(NamedTuple):
     result: Result
     figures: dict[str, Any]
     sampling: float  # of the area: by how much half the spacing changes the share
+    half: bool  # the plan is at half the spacing already
     forces: bool  # the files have the planned forces
     short: Facts
 
@@ -76,6 +78,17 @@ def at_half(job: Json, context: core.RunContext) -> dict[str, Any]:
     """A validated job at full resolution, at half its spacing, step and contact cells."""
     whole = resolution.with_mode(rounds.settled(job, context), resolution.FULL)
     return convergence.scaled(whole, "fine")
+
+
+def is_at_half(job_file: Path | str) -> bool:
+    """Whether a plan that went on at half the spacing has written a job's file: its plan.json says so."""
+    try:
+        told = json.loads(Path(job_file).with_name("plan.json").read_bytes())
+    except (OSError, ValueError, RecursionError):
+        return False
+    entry = told.get("from_file") if isinstance(told, dict) else None
+    planned = Path(job_file).name == "job.json" and isinstance(entry, dict)
+    return planned and entry.get("half") is True
 
 
 def check(
@@ -128,6 +141,7 @@ def check(
         **best.figures,
         "planned_in_tolerance": figures(best.plan.after, best.plan.settings)["in_tolerance"],
         "sampling": best.sampling,
+        "half": best.half,
         "short": [str(one) for one in best.short],
         "notes": [str(one) for one in notes],
     }
@@ -184,7 +198,7 @@ def _read(
             )
         )
         short += _places(result, mine, its, fine)
-    return _Read(plan, data, result, told, sampling, forces, short)
+    return _Read(plan, data, result, told, sampling, half, forces, short)
 
 
 def _goes_on(

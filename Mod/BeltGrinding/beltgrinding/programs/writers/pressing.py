@@ -51,6 +51,21 @@ def settle(sheet: Sheet) -> list[Fact]:
     ]
 
 
+def late(sheet: Sheet, language: str) -> list[Fact]:
+    """A warning where a device answers after a dead time, and the program's text (its suffix) does not switch earlier."""
+    device = sheet.device
+    if device is None or not device.dead_time_s or (language == ".src" and sheet.form == "spline"):
+        return []
+    return [
+        Fact(
+            "programs.writers.force_late",
+            "the force comes {seconds:g} s behind each statement (belt_machine.force_device.dead_time_s), and the program "
+            "does not switch earlier: only KRL's spline blocks do",
+            seconds=device.dead_time_s,
+        )
+    ]
+
+
 def not_set(sheet: Sheet) -> list[Fact]:
     """A warning where the program does not set the forces that its motions are to have."""
     forces = [step.force for step in sheet.steps if step.kind != "PTP" and step.force is not None]

@@ -24,7 +24,7 @@ from ..program import Motion, Program, ProgramError
 from ..registry import read_program
 from . import one_base
 from .frames import Frames, checked
-from .pressing import not_set, settle
+from .pressing import late, not_set, settle
 from .read_again import check_forces
 from .sheet import Pace, Sheet, Step
 from .spline import FORMS, fit_zones
@@ -147,7 +147,7 @@ def write_program(
         sheet.pace = None if pace is None else Pace(*pace)
         sheet.joint_percent = joint_percent
         fit_zones(sheet)
-        pressed = [*settle(sheet), *not_set(sheet)]
+        pressed = [*settle(sheet), *not_set(sheet), *late(sheet, suffix)]
     data = writer(sheet)
     if sheet.device is not None:
         check_forces(sheet, data, path.stem + suffix)

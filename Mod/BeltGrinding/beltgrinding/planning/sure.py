@@ -54,7 +54,7 @@ def band(result: Result, settings: Json, half: Floats) -> Floats:
     """(samples,) mm: half of the tolerance's band, ``half``, less what is unsure."""
     if not settings["probability"]:
         return half
-    freedoms = [laws.freedom(result.job["law"]), math.inf]
+    freedoms = [laws.freedom(typed(result.job).law), math.inf]
     of_law, of_place = core.student_quantile(max(settings["probability"], 0.5), freedoms)
     variance = (np.asarray(result.shifts) ** 2).sum(axis=1)
     by = np.sqrt(of_law**2 * variance + (of_place * settings["placement_sd_mm"]) ** 2)
@@ -71,7 +71,7 @@ def drawn(result: Result, settings: Json, height: Floats | None = None) -> Float
     weight = seen_areas(field)
     normals = np.asarray(field.normals, dtype=float)
     by_law = np.asarray(result.shifts)
-    random, freedom = np.random.default_rng(SEED), laws.freedom(result.job["law"])
+    random, freedom = np.random.default_rng(SEED), laws.freedom(typed(result.job).law)
     numbers = random.standard_normal((by_law.shape[1] + 3, DRAWN))
     if math.isfinite(freedom):
         numbers[:-3] *= np.sqrt(freedom / random.chisquare(freedom, DRAWN))

@@ -194,6 +194,8 @@ class _Run:
             lambda: not left and (enough or self._over(until)),
             self.context.part(*part),
         )
+        if enough:  # what else was done until then is chance
+            answers = [*answers[:needed], *([None] * (len(calls) - needed))]
         self.through &= enough or all(answer is not None for answer in answers)
         for answer in answers:
             for row in [] if answer is None else _rows(answer.value):
@@ -204,9 +206,9 @@ class _Run:
         for error in failed:
             if not isinstance(error, InputError):
                 raise error
-        if needed and answers[0] is not None and answers[0].error is not None:
-            if all(answer is None or answer.error is not None for answer in answers):
-                raise answers[0].error
+        if failed and all(answer is None or answer.error is not None for answer in answers):
+            if needed:
+                raise failed[0]
         return [None if answer is None else answer.value for answer in answers]
 
     def _best(self) -> float:
@@ -235,6 +237,8 @@ class _Run:
             job = {**self.data, "belt_machine": machine}
             calls.append(Call(alone, (reach_map.look, job, wanted, ways, angles)))
         answers = self._run(calls, 1.0, (0.0, 0.1), needed=len(calls))
+        if answers[0] is None:  # which says why
+            reach_map.look(self.data, wanted, ways, OWN_ANGLES, self.context.part(0.1, 0.1))
         seen = [answer and Seen(machine, answer) for machine, answer in zip(machines, answers)]
         count = 1 + len(self.search.wheels)
         others, further = ([one for one in some if one] for some in (seen[1:count], seen[count:]))

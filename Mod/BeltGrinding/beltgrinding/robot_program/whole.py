@@ -168,7 +168,7 @@ class Planner:
         }  # fmt: skip
         rapid = np.zeros(len(rows), dtype=bool)
         rapid[self.begins[:-1]] = True
-        rest = {name: value for name, value in self.given.items() if name not in arrays}
+        rest: dict[str, Any] = {k: v for k, v in self.given.items() if k not in arrays}
         return core.ToolPath(**{**rest, **arrays, "rapid": rapid})
 
     def _options(self) -> dict[str, Any]:

@@ -131,11 +131,13 @@ def test_a_robot_goes_through_the_document():
         "out_of_reach" in text and "mm are missing" in text for text in far.Events
     ), far.Events
     machine.StartJoints = "[0, -90, 90, 0, 0, 0]"
+    machine.RobotProgram = '{"home_joints_deg": [0, -90, 90, 0, 60, 0], "seed": 5}'
     machine.SingularityAngle = "7 deg"
     beltgrinding.export_job(job, "job.json")
     data = json.loads(Path("job.json").read_text())["robot"]
     assert data["preset"] == "kuka_kr16_2" and data["singularity_deg"] == 7
     assert data["start_joints_deg"] == [0, -90, 90, 0, 0, 0]
+    assert data["program"]["seed"] == 5 and data["program"]["home_joints_deg"][4] == 60
     assert data["base_from_robot"]["position_mm"] == [-4000, 0, 0]
     other = FreeCAD.newDocument("other")
     beltgrinding.export_job(beltgrinding.open_job(other, "job.json"), "copy.json")

@@ -166,10 +166,10 @@ class Planner:
             if isinstance(values, np.ndarray) and len(values) == len(self.given["rapid"])
             and name not in tool_paths.CELL_FRAMES
         }  # fmt: skip
-        rapid = np.zeros(len(rows), dtype=bool)
-        rapid[self.begins[:-1]] = True
-        rest = {name: value for name, value in self.given.items() if name not in arrays}
-        return core.ToolPath(**{**rest, **arrays, "rapid": rapid})
+        arrays["rapid"] = np.zeros(len(rows), dtype=bool)
+        arrays["rapid"][self.begins[:-1]] = True
+        rest: dict[str, Any] = {k: v for k, v in self.given.items() if k not in arrays}
+        return core.ToolPath(**rest, **arrays)
 
     def _options(self) -> dict[str, Any]:
         wheel, own = self.job.belt_machine.wheel, self.settings

@@ -9,7 +9,7 @@ from beltgrinding import cli
 from beltgrinding.engine import core
 from beltgrinding.job import load as jobs, poses
 from beltgrinding.job.robot_time import timed
-from beltgrinding.planning import from_file, grinding, rounds
+from beltgrinding.planning import by_rules, from_file, rounds
 from beltgrinding.programs.writers.writer import write_program
 from beltgrinding.raster import raster_path
 from beltgrinding.simulation import convergence, run as runs
@@ -178,10 +178,11 @@ def share_told(line):
 
 @pytest.mark.slow
 def test_grind_tells_one_set_of_figures_and_they_are_the_files(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(grinding, "TRIES", 1)
+    monkeypatch.setattr(by_rules, "TRIES", 1)
     (tmp_path / "plate.brep").write_text(plate().write_brep())
     out = tmp_path / "out"
     begin = ["grind", str(tmp_path / "plate.brep"), "-o", str(out), "--stock", "0.2"]
+    begin += ["--budget", "0"]
     begin += ["--set", "rounds=1", "--program", "plate.csv"]
     assert cli.main(begin) == 0
     printed = capsys.readouterr()
@@ -261,11 +262,12 @@ def test_a_coarse_sampling_is_told_and_planned_on_at_half(tmp_path):
 def test_with_a_force_device_the_file_presses_as_planned(
     tmp_path, capsys, monkeypatch, program, device
 ):
-    monkeypatch.setattr(grinding, "TRIES", 1)
+    monkeypatch.setattr(by_rules, "TRIES", 1)
     job = job_of(force_device=device)
     (tmp_path / "job.json").write_text(json.dumps(job))
     out = tmp_path / "out"
     begin = ["grind", str(tmp_path / "job.json"), "-o", str(out), "--program", program]
+    begin += ["--budget", "0"]
     assert cli.main([*begin, "--set", "rounds=1"]) == 0, capsys.readouterr().err
     capsys.readouterr()
     data = json.loads((out / "plan.json").read_text())

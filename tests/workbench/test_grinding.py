@@ -82,10 +82,11 @@ def test_a_part_alone_becomes_a_program(tmp_path, capsys):
     (tmp_path / "plate.brep").write_text(plate().write_brep())
     out = tmp_path / "out"
     options = ["--set", "check=false", "--set", "rounds=2", "--program", "plate.csv"]
+    options += ["--budget", "0"]
     begin = ["grind", str(tmp_path / "plate.brep"), "-o", str(out), "--stock", "0.2", *options]
     assert cli.main(begin) == 0
     printed = capsys.readouterr().out
-    assert "passes  apart mm" in printed and "planned: " in printed
+    assert "passes       wheel mm" in printed and "planned: " in printed
     names = {path.name for path in out.iterdir()}
     assert names == {"plate.csv", "job.json", "feeds.csv", "plan.json", "plan.png", "result"}
     plan = json.loads((out / "plan.json").read_text())

@@ -220,16 +220,17 @@ def climb(
     settings: Json,
     fidelity: Fidelity = QUICK,
     zones: Zones | None = None,
-    tries: int = TRIES,
+    tries: int = 0,
     moves: tuple[Moves, ...] = (),
     told: Callable[[dict[str, Any]], object] | None = None,
     context: core.RunContext | None = None,
     before: Tried | None = None,
 ) -> tuple[Tried, list[dict[str, Any]]]:
-    """(the best passes of at most ``tries``, what is told of each): begins with ``first``, or with ``before``, which was tried,
+    """(the best passes of at most ``tries``, 0: ``TRIES``, what is told of each): begins with ``first``, or with ``before``, which was tried,
     and goes on from the best with what may mend it, the likeliest first. ``moves``: what may be tried besides ``others``. Raises InputError
     where ``first`` cannot be laid, Cancelled."""
     context = context or core.RunContext()
+    tries = tries or TRIES
     best, rows = before, list[dict[str, Any]]()
     seen = set[str]()
     queue: list[Move] = [first] if before is None else _following(before, moves)

@@ -14,9 +14,10 @@ from pivy import coin
 
 from beltgrinding.engine import core
 from beltgrinding.gui.scene import legend, legend_picture
+from beltgrinding.gui.scene.camera import look_at
 from beltgrinding.gui.scene.legend import label_values
+from beltgrinding.objects import api
 from support import pictures
-from support.freecad import ROOT
 from support.hands import choose, field, menu, prepare, press, settle, start, type_in, wait, widgets
 from support.picture import coloured
 
@@ -24,9 +25,21 @@ from support.picture import coloured
 @pytest.fixture(scope="module")
 def demo(freecad, tmp_path_factory):
     out = tmp_path_factory.mktemp("demo")
-    script = (ROOT / "tools" / "demo_document.py").read_text()
-    freecad.run(script, window=True, BELTGRINDING_OUT=out)
+    freecad.call(blade_document, out, window=True)
     return out
+
+
+def blade_document(out):
+    job = api.open_example(out)
+    simulation = api.simulate(job, write_to=out)
+    api.make_deviation(job)
+    for part, _ in job.DesignFaces:
+        part.ViewObject.Visibility = False  # it would hide what is cut below it
+    normals = simulation.Proxy.field(simulation).normals
+    look_at(FreeCAD.Vector(*normals.mean(axis=0).tolist()))
+    view = FreeCADGui.ActiveDocument.ActiveView
+    view.saveImage(str(out / "deviation.png"), 1400, 1000, "White")
+    job.Document.saveAs(str(out / "deviation.FCStd"))
 
 
 @pytest.mark.slow

@@ -330,7 +330,7 @@ TEST(SampleFaces, LiesDenselyAtALeadingEdgeOnly) {
 }
 
 TEST(SampleFaces, HasARowOnEveryCrownWhateverTheSpacing) {
-    const Shape shape = leading_edge();
+    const Shape shape = leading_edge().flipped(true, {});  // out of the blade
     for (const double spacing : {0.3, 0.4, 0.5, 0.7, 1.0}) {
         SamplingOptions options;
         options.spacing = spacing;

@@ -93,7 +93,7 @@ def plot(section: Json, mode: str = UNROLLED, exaggeration: float | None = None)
         return (piece["point"] + factor * height[:, None] * piece["ray"]) @ axes
 
     lower, upper = section["tolerance"]
-    half = float(core.student_quantile(0.5 + 0.5 * SURE, section["sd_freedom"]))
+    half = float(core.student_quantile(0.5 + 0.5 * SURE, section.get("sd_freedom", math.inf)))
     lines: dict[str, list[Floats]] = {key: [] for key in LOOKS}
     ground = []
     for piece in section["pieces"]:

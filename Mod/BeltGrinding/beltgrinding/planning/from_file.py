@@ -87,8 +87,9 @@ def is_at_half(job_file: Path | str) -> bool:
     except (OSError, ValueError, RecursionError):
         return False
     entry = told.get("from_file") if isinstance(told, dict) else None
-    planned = Path(job_file).name == "job.json" and isinstance(entry, dict)
-    return planned and entry.get("half") is True
+    if Path(job_file).name != "job.json" or not isinstance(entry, dict):
+        return False
+    return entry.get("half") is True
 
 
 def check(

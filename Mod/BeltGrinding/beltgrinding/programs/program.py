@@ -390,7 +390,7 @@ def share_of_zone(zone: float) -> float | None:
     return -1.0 - zone if ON_CURVE < zone < -1.0 else None
 
 
-def corner_of(zone: float) -> dict[str, float]:
+def corner_of(zone: float) -> dict[str, Any]:
     """The arguments of a ``Motion`` for a zone as paths have it."""
     share = share_of_zone(zone)
     if share is not None:

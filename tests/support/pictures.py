@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from .freecad import ROOT
-
+ROOT = Path(__file__).resolve().parents[2]
 MADE = ROOT / "build" / "pictures"  # where tests put them; tools/pictures takes them from there
 IMAGES = ROOT / "docs" / "images"
 APART = {"contact-reference": "tools/contact_picture.py"}  # CalculiX takes minutes

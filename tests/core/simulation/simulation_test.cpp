@@ -313,7 +313,7 @@ TEST(Simulation, LimitsAndOutputsChangeNothingThatIsGround) {
     EXPECT_TRUE(bare.trace.empty());
     Recording recording;
     o.limits = {1.0, 1e-3, 1e-4, 1e-4, {0.2f}};
-    o.outputs = {true, 7, &recording, {std::make_shared<LocalLaw>(LocalLawParameters{1e-6})}};
+    o.outputs = {true, 7, &recording, {{std::make_shared<LocalLaw>(LocalLawParameters{1e-6})}}};
     const SimulationResult with = simulate(full, path, foundation, law, o);
     EXPECT_GE(with.events.size(), 3u);
     EXPECT_EQ(recording.samples(), full.size());

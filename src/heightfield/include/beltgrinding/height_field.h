@@ -105,7 +105,7 @@ struct FinishTrace {
 /// (`lean_at_edges`).
 ///
 /// Ren, Kuhlenkoetter, Mueller: Simulation and verification of belt grinding with industrial robots
-/// (Int. J. Machine Tools & Manufacture 46, 2006), section 3.
+/// (Int. J. Machine Tools & Manufacture 46, 2006), section 2.
 struct HeightField {
     std::vector<Vec3> point;          ///< on the design surface, mm
     std::vector<Vec3f> normal;        ///< unit, out of the solid

@@ -60,11 +60,10 @@ struct LocalLawParameters {
 };
 
 /// The local law: dh/dt = K k_t g_b(V_b) g_w(V_w) g_p(p), with g_b = V_ref (V_b / V_ref)^beta, g_w
-/// = (V_w / V_w,ref)^gamma, g_p = p_ref (q / p_ref)^alpha, q = max(p - threshold, 0), saturating as
-/// q
-/// -> p_s (1 - exp(-q / p_s)). With alpha = beta = 1 and gamma = 0 it is the linear law dh/dt = K
-/// k_t V_b p, which integrates to Hammann's over a pass (Ren, Kuhlenkötter and Müller, Robotics and
-/// Computer-Integrated Manufacturing 23, 2007); the exponents are those of power-law fits of belt
+/// = (V_w / V_w,ref)^gamma, g_p = p_ref (q / p_ref)^alpha, q = max(p - threshold, 0), saturating
+/// as q -> p_s (1 - exp(-q / p_s)). With alpha = beta = 1 and gamma = 0 it is the linear law dh/dt
+/// = K k_t V_b p, which integrates to Hammann's over a pass (Ren, Kuhlenkötter and Müller, Int. J.
+/// Machine Tools and Manufacture 46, 2006); the exponents are those of power-law fits of belt
 /// grinding (docs/methods.md). On a serrated wheel the lands bear the whole force: the cut is
 /// land_share g_p(p / land_share).
 class LocalLaw final : public RemovalLaw {

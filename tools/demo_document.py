@@ -44,8 +44,11 @@ plan = api.make_plan(job, ForceMin=LEAST_FORCE, Check=False)
 force = min(one for one in plan.NewForces if one >= 0.0)
 say(f"    {len(plan.NewFeeds)} feeds; {force:.1f} N")
 say("3 of 5: grinds it by its own program, in the robot's time")
+own = {key.name: getattr(job, key.name) for key in TIMING}
 from_job(job, TIMING, {"simulation": json.loads(plan.TimeLaw)})
 ground(job, "before")
+for name, value in own.items():  # as it was when it was planned
+    setattr(job, name, value)
 say("4 of 5: grinds it as planned")
 api.apply_plan(plan)
 ground(job, "after")

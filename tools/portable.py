@@ -90,17 +90,26 @@ def bundle(binaries: list[Path], folder: Path) -> list[Path]:
         output("patchelf", "--set-soname", copy.name, copy)
         copies.append(copy)
     for one in [*binaries, *copies]:
-        renamed: list[str] = []
         for name in output("patchelf", "--print-needed", one).split():
             if name in wanted:
-                renamed += ["--replace-needed", name, own_name(name)]
+                output("patchelf", "--replace-needed", name, own_name(name), one)
             elif FREECADS.fullmatch(name):
-                renamed += ["--remove-needed", name]
+                output("patchelf", "--remove-needed", name, one)
         rpath = "$ORIGIN" if one in copies else "$ORIGIN/" + folder.name
-        output("patchelf", *renamed, "--set-rpath", rpath, one)
+        output(
+            "patchelf", "--set-rpath", rpath, one
+        )  # alone: with others patchelf 0.14 leaves those out
         output("strip", "--strip-unneeded", one)
         make_unique_symbols_plain(one)
     curl.unlink()
+    left = {
+        name
+        for one in [*binaries, *copies]
+        for name in output("patchelf", "--print-needed", one).split()
+    }
+    foreign = {one for one in left if not one.endswith(own_name("")) and not HOST.fullmatch(one)}
+    if foreign:
+        sys.exit(f"still needed by their own names: {', '.join(sorted(foreign))}")
     return [libraries[name].resolve() for name in sorted(wanted) if name != CURL]
 
 

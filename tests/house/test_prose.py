@@ -9,7 +9,6 @@ NOT_YET = """
     architecture.md
     calibration.md
     force-device.md
-    heat.md
     planning.md
     program-writing.md
     raster.md

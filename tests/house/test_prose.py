@@ -9,7 +9,6 @@ NOT_YET = """
     architecture.md
     force-device.md
     planning.md
-    program-writing.md
     raster.md
     reach.md
 """.split()

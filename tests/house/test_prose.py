@@ -10,7 +10,6 @@ NOT_YET = """
     force-device.md
     planning.md
     raster.md
-    reach.md
 """.split()
 PAGES = [
     "README.md",

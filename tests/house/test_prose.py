@@ -12,7 +12,6 @@ NOT_YET = """
     heat.md
     planning.md
     program-writing.md
-    raster.md
     reach.md
 """.split()
 PAGES = [

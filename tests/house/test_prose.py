@@ -10,7 +10,6 @@ NOT_YET = """
     calibration.md
     force-device.md
     heat.md
-    planning.md
     program-writing.md
     reach.md
 """.split()

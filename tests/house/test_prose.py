@@ -6,8 +6,17 @@ from support import prose
 
 # Pages that are not rewritten yet. The list only becomes shorter.
 NOT_YET = """
+<<<<<<< HEAD
     planning.md
     raster.md
+=======
+    architecture.md
+    calibration.md
+    force-device.md
+    heat.md
+    program-writing.md
+    reach.md
+>>>>>>> manual-c
 """.split()
 PAGES = [
     "README.md",

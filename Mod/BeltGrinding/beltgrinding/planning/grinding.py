@@ -93,7 +93,10 @@ def _planned(
 def _with_forces(job: Job, settings: Json) -> dict[str, Any]:
     settings = dict(settings)
     machine = job.belt_machine
-    if sets_force(job, settings) and settings["force_min_N"] == 0.0:
+    asked = (
+        settings["force_max_N"] > 0.0 or of_job(job) is not None
+    )  # without a device it is set once, by hand
+    if machine.control == "force" and asked and settings["force_min_N"] == 0.0:
         least = GENTLER if settings["timing"] == "robot" else GENTLE
         settings = {**settings, "force_min_N": least * machine.force_N}
     return settings

@@ -49,7 +49,7 @@ class PlanView(View):
             return
         if name == "OutOfDate":
             self.view.signalChangeIcon()
-        if name in ("OutOfDate", "Fingerprint"):
+        if name in ("OutOfDate", "Fingerprint", "Applied"):
             self.draw()
 
     def onChanged(self, view: ViewObject, name: str) -> None:
@@ -57,11 +57,13 @@ class PlanView(View):
             self.draw()
 
     def draw(self) -> None:
-        """Draws the places as they are; none of a plan that is out of date."""
+        """Draws the places as they are; none of a plan that is out of date, or applied: then the deviation shows what is
+        left, in the colours of its own legend."""
         obj = self.view.Object
         self.left.whichChild = coin.SO_SWITCH_NONE
         self.left.removeAllChildren()
-        if not getattr(obj, "Fingerprint", "") or obj.OutOfDate or not self.view.Visibility:
+        gone = obj.OutOfDate or obj.Applied or not self.view.Visibility
+        if not getattr(obj, "Fingerprint", "") or gone:
             return
         corners = np.array(obj.LeftTriangles, dtype=int).reshape(-1, 3)
         points = np.array([tuple(point) for point in obj.LeftPoints]).reshape(-1, 3)

@@ -111,8 +111,20 @@ def _grind(arguments):
     searching.tell(arguments, ground)
     if not arguments.quiet:
         print_text(plan.text(plans.summary(found), checked is not None, before=False))
+        _tell_force(found)
         print_text(f"program, job and result in {out}")
     outcome.tell(arguments, found.after, wanted["wanted_share"])
+
+
+def _tell_force(found):
+    """Which one force is to be set by hand."""
+    commands = found.commands
+    forces = set(commands.force(found.factors).tolist())
+    by_force = found.job["belt_machine"]["control"] == "force"
+    if by_force and commands.device is None and len(forces) == 1:
+        print_text(
+            f"set {forces.pop():.4g} N by hand on the belt machine: the program sets no force"
+        )
 
 
 def _job(arguments, context):

@@ -27,6 +27,7 @@ CURL = "libcurl.so.4"
 PURE = ("jsonschema", "attr", "attrs", "pyrsistent", "_pyrsistent_version.py")
 THREE = Path("/usr/share/javascript/three/three.min.js")
 MOST_MB = 60
+TRIAL = "import sys; sys.path.insert(0, sys.argv[1]); import beltgrinding_core, beltgrinding_scan"
 WHEEL = """Wheel-Version: 1.0
 Generator: belt-grinding
 Root-Is-Purelib: false
@@ -90,6 +91,7 @@ def bundle(binaries: list[Path], folder: Path) -> list[Path]:
         output("patchelf", "--set-soname", copy.name, copy)
         copies.append(copy)
     for one in [*binaries, *copies]:
+        output("strip", "--strip-unneeded", one)  # first: it breaks what patchelf has moved
         for name in output("patchelf", "--print-needed", one).split():
             if name in wanted:
                 output("patchelf", "--replace-needed", name, own_name(name), one)
@@ -99,7 +101,6 @@ def bundle(binaries: list[Path], folder: Path) -> list[Path]:
         output(
             "patchelf", "--set-rpath", rpath, one
         )  # alone: with others patchelf 0.14 leaves those out
-        output("strip", "--strip-unneeded", one)
         make_unique_symbols_plain(one)
     curl.unlink()
     left = {
@@ -264,6 +265,7 @@ def write_wheel(stage: Path, work: Path, digits: str, version: str, out: Path) -
 
 def main(stage: Path, built: Path, out: Path) -> None:
     binaries, digits = stage_portable(stage, built)
+    output("/usr/bin/python3", "-c", TRIAL, stage)
     version = re.findall(r"<version>(.*)</version>", (stage / "package.xml").read_text())[0]
     path = out / f"BeltGrinding-{version}-linux-x86_64.zip"
     write_zip(stage, path)

@@ -27,7 +27,7 @@ def loaded_by(arguments):
 )
 def test_help_loads_nothing_heavy(arguments):
     loaded, printed = loaded_by(["-m", "beltgrinding", *arguments])
-    assert printed.startswith("usage: beltgrind")
+    assert "usage: beltgrind" in printed
     assert "beltgrinding" in loaded and loaded.isdisjoint(HEAVY)
 
 

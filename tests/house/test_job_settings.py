@@ -95,7 +95,7 @@ MOST_SUBSCRIPTS = {
     "cell": 0,
     "raster": 0,
     "inspection": 2,
-    "planning": 5,
+    "planning": 16,  # its search hands wheels from job to job, as data
     "simulation": 7,
     "reporting": 10,
     "job": 27,

@@ -30,6 +30,8 @@ from .proxy import Proxy
 from .raster_path import KEYS as PASSES, RasterPath, settings_of, take
 from .robot_path import RobotPath, force_device, read_again
 
+EXPORTED = "passes.src"  # as what a path is exported
+
 KEYS = (
     Key("Goal", "Enumeration", "Goal", "plan.goal"),
     Key("Timing", "Enumeration", "Goal", "plan.timing"),

@@ -170,7 +170,8 @@ def expected(job: Json, context: core.RunContext | None = None) -> float:
 
 
 def _coarser(job: Json, area: float, fidelity: Fidelity) -> Json:
-    spacing = job["sampling"]["spacing_mm"]
+    sampling = typed(job).sampling
+    spacing = sampling.spacing_mm
     if area <= fidelity.samples * spacing**2:
         return job
     if fidelity.halved:
@@ -178,8 +179,8 @@ def _coarser(job: Json, area: float, fidelity: Fidelity) -> Json:
     factor = math.sqrt(area / fidelity.samples) / spacing
     wider = {
         "spacing_mm": factor * spacing,
-        "edge_spacing_mm": factor * job["sampling"]["edge_spacing_mm"],
-        "precision_mm": factor**2 * job["sampling"]["precision_mm"],
+        "edge_spacing_mm": factor * sampling.edge_spacing_mm,
+        "precision_mm": factor**2 * sampling.precision_mm,
     }
     return {**job, "sampling": {**job["sampling"], **wider}}
 

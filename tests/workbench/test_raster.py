@@ -441,8 +441,8 @@ def test_a_real_blade_is_covered(along):
         angles.append(np.degrees(np.arccos(np.clip(-pose[:3, 2] @ samples.normals[k], -1, 1))))
     # Samples 0.15 mm apart see the leading edge, of some 0.2 mm radius, no better than 0.06 mm.
     assert np.percentile(off, 98) < 0.05 and max(off) < 0.08
-    # Round the sharp leading edge a turn is spread: by half of edge_turn_deg, as finely as samples see it.
-    assert np.percentile(angles, 90) < 3 and max(angles) < 20 + 2
+    # Round the sharp leading edge a turn is spread: by half of edge_turn_deg, and samples see its radius of some 0.2 mm.
+    assert np.percentile(angles, 90) < 3 and max(angles) < 20 + 5
 
 
 def make(doc):

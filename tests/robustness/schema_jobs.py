@@ -192,7 +192,13 @@ class _Maker:
             return {}
         root = [[0.2 * self.dice.gauss(0, 1) for _ in names] for _ in names]
         covariance = (np.array(root) @ np.array(root).T).tolist()
-        return {"parameters": names, "covariance": covariance, "scatter": 0.1}
+        more = {"freedom": self.dice.uniform(1, 40), "widening": self.dice.uniform(1, 3)}
+        return {
+            "parameters": names,
+            "covariance": covariance,
+            "scatter": 0.1,
+            **{name: value for name, value in more.items() if self.dice.random() < SOMETIMES},
+        }
 
     def finish_model(self):
         more = {"rest_per_pass": 0.3, "ln_deviation": 0.1, "source": "made up", "calibration": {}}
@@ -250,8 +256,15 @@ class _Maker:
         return self.dice.choice(([], [self.dice.uniform(-90, 90) for _ in range(6)]))
 
     def robot_program(self):
-        home = [self.dice.uniform(-90, 90) for _ in range(6)]
-        return self.dice.choice(({}, {"home_joints_deg": home, "order": "least_way"}))
+        rule = self.rules["properties"]["robot"]["properties"]["program"]
+        made = self.object(rule, ("robot", "program"))
+        for name, least, most in (
+            ("home_joints_deg", -90, 90),
+            ("joint_acceleration_deg_s2", 0, 900),
+        ):
+            if name in made:
+                made[name] = [self.dice.uniform(least, most) for _ in range(6)]
+        return made
 
     def robot_link_radii_mm(self):
         return self.dice.choice(([], [50.0] * 7))

@@ -33,7 +33,7 @@ def ordinary(tmp_path_factory):
 
 
 @contextmanager
-def soon(ordinary, times=8):
+def soon(ordinary, times=5):
     """What happens in it takes no longer than ``times`` the reading of 20,000 motions."""
     begin = time.process_time()
     yield

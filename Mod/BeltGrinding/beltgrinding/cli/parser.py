@@ -73,7 +73,7 @@ class Parser(argparse.ArgumentParser):
             action="store_true",
             dest="everything",
             default=argparse.SUPPRESS,
-            help="each warning in a line of its own; many of a kind are told in one",
+            help="print each warning on its own line, in place of one line for many of a kind",
         )
         self.as_json = False
         self.register("type", float, _number(float))

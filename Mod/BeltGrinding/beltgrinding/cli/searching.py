@@ -18,7 +18,7 @@ def add(parser):
         "--wheels",
         metavar="WHEELS",
         help="wheels that may be taken: own, any, or sizes in mm as 20x15,10x8c40 (radius x width, c: with a crown of "
-        "that radius); without it any for a part's file, own for a job, of which is told what others would bring",
+        "that radius); default: any for a part's file; own for a job, with what other wheels would bring",
     )
     parser.add_argument(
         "--processes",
@@ -94,7 +94,7 @@ def search(arguments, job, fixed, of_a_job):
 
 
 class Watched:
-    """What is told of a search, and Ctrl-C while it goes on: once, the best so far is taken."""
+    """Progress of a search; the first Ctrl-C takes the best so far."""
 
     def __init__(self, told):
         self._told, self.searching, self.enough = told, False, False

@@ -84,7 +84,7 @@ def message(reason: object) -> str:
         "What to do: with a FreeCAD whose Python is 3.11 or 3.13, on Linux and an x86-64 processor, "
         "install the portable package (BeltGrinding-*-linux-x86_64.zip), or on Debian the package of "
         "your release (apt install ./beltgrinding_*.deb). Anywhere else build the core for your FreeCAD from the sources: "
-        "tools/install. All are told in docs/install.md.",
+        "tools/install. See docs/install.md.",
     ]
     return "\n".join(lines)
 

@@ -247,7 +247,7 @@ def _steps(calibration: Json) -> list[dict[str, float]]:
     names = calibration.get("parameters", [])
     wide = float(calibration.get("widening", 1.0))
     steps = [{COEFFICIENT: wide * float(calibration.get("scatter", 0.0))}]
-    # Of times and areas the engine is told nothing: the rest's own covariance.
+    # The engine knows no times or areas: it gets the covariance of the other parameters.
     known = [i for i, name in enumerate(names) if name in MOVED]
     if known:
         covariance = np.array(calibration["covariance"], dtype=float)[np.ix_(known, known)]

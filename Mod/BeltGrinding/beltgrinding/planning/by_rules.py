@@ -70,7 +70,7 @@ class Tried(NamedTuple):
     looks: Floats  # (3,) unit: the faces' mean normal, 0 of closed ones
 
     def row(self, better: bool) -> dict[str, Any]:
-        """What is told of it."""
+        """Figures of these passes for tables and JSON."""
         wheel = self.machine["wheel"]
         return {
             "change": self.change,
@@ -227,9 +227,12 @@ def climb(
     context: core.RunContext | None = None,
     before: Tried | None = None,
 ) -> tuple[Tried, list[dict[str, Any]]]:
-    """(the best passes of at most ``tries``, 0: ``TRIES``, what is told of each): begins with ``first``, or with ``before``, which was tried,
-    and goes on from the best with what may mend it, the likeliest first. ``moves``: what may be tried besides ``others``. Raises InputError
-    where ``first`` cannot be laid, Cancelled."""
+    """Climb from passes to better ones. Returns (the best of at most ``tries``, 0: ``TRIES``; a row of figures for each).
+
+    Begins with ``first``, or with ``before``, which was tried, and goes on from the best with what may mend it, the
+    likeliest first. ``moves``: what may be tried besides ``others``. Raises InputError where ``first`` cannot be laid,
+    Cancelled.
+    """
     context = context or core.RunContext()
     tries = tries or TRIES
     best, rows = before, list[dict[str, Any]]()
@@ -298,6 +301,7 @@ def _repeats(plan: rounds.Plan, now: int) -> tuple[float, int]:
     slowest, _ = plan.commands.feed_range
     _, strongest = plan.commands.force_range
     more = (plan.new / slowest) * (strongest / plan.factors)  # of each command, than it removes now
+    more[plan.commands.kept] = 1.0
     motions = np.repeat(np.arange(len(influence)), np.diff(influence.first).astype(int))
     depth = influence.depth * more[plan.commands.group][motions]
     most = np.bincount(influence.sample.astype(int), depth, len(field.height))

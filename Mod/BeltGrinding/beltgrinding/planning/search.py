@@ -47,7 +47,7 @@ class Search(NamedTuple):
     wheels: tuple[
         Json, ...
     ] = ()  # belt machines of the job, which may be taken in place of its own
-    further: tuple[Json, ...] = ()  # those of which is told what they would bring
+    further: tuple[Json, ...] = ()  # only their gain is reported
     fixed: tuple[str, ...] = ()  # settings of the raster that stay as they are
     workers: int = 0  # processes at most; 0: one a core
 

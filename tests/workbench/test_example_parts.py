@@ -85,8 +85,12 @@ def test_the_wheel_wraps_round_the_blades_leading_edge(made):
     assert 0.85 < summary["in_tolerance_area_share"] < 0.95
     assert "collision" not in kinds and "gouge" in kinds
     deep = verdict["clusters"][0]  # a strip along the edge
-    assert deep["side"] == "below" and deep["area_mm2"] > 500
+    assert deep["side"] == "below"
     assert deep["centroid_mm"][0] < -15.0 and deep["worst"]["value_mm"] < -0.2
+    # At this spacing the verdict divides the strip along the nose; with edge_spacing_mm 0.05 it is one of 1,143 mm2.
+    below = [one for one in verdict["clusters"] if one["side"] == "below"]
+    strip = [one for one in below if one["centroid_mm"][0] < -15.0]
+    assert 1000 < sum(one["area_mm2"] for one in strip) < 1300
     shares = {face["face"]: face["in_share"] for face in verdict["faces"]}
     sides = sorted(shares.values())[-2:]
     assert sides[0] > 0.88  # of pressure and suction side

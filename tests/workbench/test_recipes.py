@@ -9,7 +9,7 @@ import pytest
 from support.freecad import ROOT
 
 PAGE = (ROOT / "docs" / "recipes.md").read_text(encoding="utf-8")
-BLOCK = re.compile(r"(?:^ {4}.*\n|^\n(?= {4}))+", re.M)
+BLOCK = re.compile(r"^```\w+\n(.*?)\n```$", re.M | re.S)
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w])")
 NEAR = 0.03  # of a number: another Debian's CAD kernel samples the surface a little differently
 SLOW = {
@@ -22,14 +22,9 @@ SLOW = {
 }
 
 
-def blocks(text):
-    """The indented blocks of a text, without their indentation."""
-    return [re.sub(r"^ {4}", "", one, flags=re.M).strip("\n") for one in BLOCK.findall(text)]
-
-
 HEAD, *PARTS = re.split(r"^### ", PAGE, flags=re.M)
-(FIRST,) = blocks(HEAD)
-RECIPES = {part.split("\n")[0]: blocks(re.split(r"^## ", part, flags=re.M)[0]) for part in PARTS}
+(FIRST,) = BLOCK.findall(HEAD)
+RECIPES = {part.split("\n")[0]: BLOCK.findall(part) for part in PARTS}
 
 
 def printed(code):

@@ -382,7 +382,7 @@ def changed(tmp_path, suffix, given, forces, changes, form=""):
     return [line for line in new if line not in old], pressed(output, given)
 
 
-@pytest.mark.parametrize("suffix", [".src", ".mod", ".script"])
+@pytest.mark.parametrize("suffix", [".src", ".mod", ".script", ".ls", ".jbi"])
 @pytest.mark.parametrize("given", [ANALOG, CALL, TEMPLATE])
 @pytest.mark.parametrize("form", ["", "spline"])
 def test_a_changed_force_goes_back_into_the_program(tmp_path, suffix, given, form):
@@ -402,6 +402,16 @@ def test_a_force_in_a_spline_is_triggered(tmp_path):
     lines, found = changed(tmp_path, ".src", OUT, [5.0, 5.0, 5.0], {2: 6.0}, "spline")
     start = "TRIGGER WHEN PATH=0 ONSTART DELAY=0 DO $ANOUT[1]="
     assert found == [5.0, 6.0, 5.0] and lines == [f"{start}0.06", f"{start}0.05"]
+
+
+def test_fanuc_s_lines_are_numbered_and_counted_anew(tmp_path):
+    changed(tmp_path, ".ls", OUT, [5.0, 5.0, 5.0, 5.0], {2: 6.0})
+    text = (tmp_path / "new" / "p.ls").read_text()
+    lines = text[text.index("/MN") + 4 : text.index("/POS")].splitlines()
+    assert [int(line.partition(":")[0]) for line in lines] == list(range(1, len(lines) + 1))
+    assert f"LINE_COUNT = {len(lines)};" in text
+    motions = [line.partition(":")[2].split("%")[0][:6] for line in lines[-6:]]
+    assert motions == ["L P[2]", "AO[1]=", "L P[3]", "AO[1]=", "L P[4]", "L P[5]"][-6:], lines
 
 
 def test_a_force_without_a_device_is_refused_as_before(tmp_path):

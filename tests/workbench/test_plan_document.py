@@ -237,3 +237,49 @@ def test_passes_are_laid_and_planned_and_applied_together():
         raise AssertionError("two paths")
     except InputError as error:
         assert "one raster path" in str(error), error
+
+
+@pytest.mark.freecad
+def test_what_is_told_is_what_the_file_does():
+    write_pass()
+    doc = FreeCAD.newDocument("life")
+    job = raster_job(doc)
+    # There is no force device: the file sets no force, and the plan goes on with the belt machine's.
+    plan = beltgrinding.make_plan(job, Rounds=1, ForceMin="5 N")
+    told = plan.Proxy.data(plan)["from_file"]["in_tolerance"]
+    assert near(plan.InTolerance, 100.0 * told, 1e-9)
+    assert any("with the force that the file has" in one for one in plan.FilesShort)
+    beltgrinding.apply_plan(plan)
+    beltgrinding.export_program(doc.RasterPath, "passes.src")
+    again = beltgrinding.import_program(job, "passes.src")
+    grinds = [not fast for fast in doc.RasterPath.Rapid]
+    for name in ("Feeds", "Forces"):
+        mine, its = getattr(doc.RasterPath, name), getattr(again, name)
+        off = [(a, b) for a, b, on in zip(mine, its, grinds) if on and not near(a, b, 0.1)]
+        assert not off, (name, off[:5])
+
+
+@pytest.mark.freecad
+def test_a_program_takes_along_what_it_is_read_with():
+    write_pass()
+    doc = FreeCAD.newDocument("life")
+    frames = "{X %d,Y %d,Z Z0,A 0,B 0,C 180}"
+    lines = ["DEF grind()", "$TOOL={X 0,Y 0,Z 0,A 0,B 0,C 0}", "$BASE={X 0,Y 0,Z 0,A 0,B 0,C 0}"]
+    for y in range(4, 40, 4):
+        lines += ["PTP " + frames % (2, y), "$VEL.CP=0.09"] + [
+            f"LIN {frames % (x, y)}" for x in range(6, 60, 4)
+        ]
+    Path("grind.src").write_text("\n".join([*lines, "END"]) + "\n")
+    values = {"variables": {"Z0": 20.0}}
+    Path("grind.values.json").write_text(json.dumps(values))
+    job = make(block(doc))
+    doc.removeObject("RobotPath")
+    beltgrinding.import_program(job, "grind.src")
+    plan = beltgrinding.make_plan(job, Timing="job", Rounds=2)
+    assert plan.Better, plan.Rates
+    assert not any("poses of the plan" in one for one in plan.FilesShort), plan.FilesShort
+    Path("out").mkdir()
+    beltgrinding.write_plan(plan, "out")
+    assert json.loads(Path("out/grind.values.json").read_text()) == values
+    again = beltgrinding.import_program(job, "out/grind.src")
+    assert list(again.Poses) == list(doc.RobotPath.Poses)

@@ -208,12 +208,8 @@ def _check_name(name, form, job=None):
 def _write_program(found, file, force, form):
     import os
 
-    from ..base.files import cannot_be_written
     from ..engine import InputError
-    from ..job.poses import listed_poses
-    from ..programs.writers.writer import write_program
-    from ..raster import raster_path
-    from .program import _as_followed, _frame_words
+    from ..planning.written import write_made
 
     if os.path.lexists(file) and not force and not (file.parent / "plan.json").exists():
         raise InputError(
@@ -221,10 +217,4 @@ def _write_program(found, file, force, form):
             "{file}: is there already, and no plan has written it; choose another folder, or replace it by --force",
             file=file,
         )
-    laid = listed_poses(found.job["programs"][0]["poses"], "raster")
-    try:
-        made = raster_path.program(laid, **_frame_words(found.job))
-        followed, told = _as_followed(form, found.job, file)
-        return write_program(file, None, made, **followed) + told
-    except OSError as error:
-        raise cannot_be_written(file, error) from None
+    return write_made(found, 0, file, form)

@@ -122,16 +122,6 @@ def add_form(command, default="as the job's robot.controller follows them"):
     )
 
 
-def _as_followed(form, job, file):
-    """(options with which ``write_program`` writes passes that were laid or planned for a job, what is to be told of
-    the form that is given)."""
-    from ..job import robot_time
-    from ..programs.force_device import of_job
-
-    options, told = robot_time.written(job, file, form)
-    return {**options, "force_device": of_job(job)}, told
-
-
 def _form_of_controller(arguments):
     """(form of a converted program, what is to be told of it): of ``--controller``, if one is named."""
     from ..job import robot_time
@@ -161,17 +151,6 @@ def _roll(arguments):
             given=given,
         ) from None
     return {"roll": "fixed", "roll_direction": values}
-
-
-def _frame_words(job):
-    """What a job tells of the frames of its programs."""
-    from ..presets import robot as robots
-    from ..programs.writers.frames import words_of_cell
-
-    if not robots.given(job["robot"]):
-        return {}
-    keys = ("base_from_robot", "flange_from_tcp")
-    return words_of_cell(*(robots.robot_frame(job["robot"], key) for key in keys))
 
 
 def _program(arguments):
@@ -367,17 +346,10 @@ def _write_picture(file, data):
 
 
 def _write_raster(arguments, file, job, found):
-    from ..base.files import cannot_be_written
-    from ..programs.writers.writer import write_program
-    from ..raster import raster_path as raster
+    from ..planning.written import write_passes
 
-    try:
-        made = raster.program(found, **_frame_words(job))
-        followed, told = _as_followed(arguments.form, job, file)
-        notes = write_program(file, None, made, **frames_options.given(arguments), **followed)
-        notes += told
-    except OSError as error:
-        raise cannot_be_written(file, error) from None
+    given = frames_options.given(arguments)
+    notes = write_passes(file, found, job, arguments.form, **given)
     arguments.messages.print_warnings(found["warnings"])
     arguments.messages.print_written(notes)
 

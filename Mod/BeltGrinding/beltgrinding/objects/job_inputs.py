@@ -76,7 +76,7 @@ def _paths(job: DocumentObject) -> list[DocumentObject]:
     return paths
 
 
-def _overrides(path: DocumentObject) -> dict[str, float]:
+def overrides(path: DocumentObject) -> dict[str, float]:
     """A program's keys that replace its own feeds and forces."""
     keys = {}
     if path.ForceOverride.Value > 0:
@@ -102,7 +102,7 @@ def fingerprint(job: DocumentObject) -> str:
     data["design"]["digest"] = faces_digest(f for i, f in enumerate(shape.Faces, 1) if i in chosen)
     data["cell"]["bodies"] = bodies.digest(child(job, BeltMachine))
     data["programs"] = [
-        {**_overrides(path), "digest": path.Proxy.digest(path)} for path in _paths(job)
+        {**overrides(path), "digest": path.Proxy.digest(path)} for path in _paths(job)
     ]
     return hashlib.sha256(json.dumps(data, sort_keys=True, allow_nan=False).encode()).hexdigest()
 
@@ -126,7 +126,7 @@ def to_data(
     # The poses come from properties that hold nothing but numbers, and they may be many.
     data = jobs.validate(data, folder)
     for program, path in zip(data["programs"], paths):
-        program.update(_overrides(path))
+        program.update(overrides(path))
         program["name"] = path.Label
         program["poses"] = list_poses({**path.Proxy.arrays(path), "gaps": path.Proxy.gaps(path)})
         program["unresolved"] = len(path.Problems)
@@ -165,7 +165,7 @@ def tool_paths(job: DocumentObject) -> list[core.ToolPath]:
     paths = []
     for path in _paths(job):
         arrays = dict(path.Proxy.arrays(path))
-        keys = _overrides(path)
+        keys = overrides(path)
         for name, key in (("feeds", "feed_mm_s"), ("forces", "force_N")):
             if key in keys:
                 arrays[name] = np.full(len(arrays["lines"]), keys[key])

@@ -12,25 +12,25 @@ from typing import Any
 
 import numpy as np
 
-from ..base.files import cannot_be_written, write_whole
+from ..base.files import cannot_be_written
 from ..base.kinds import Array, Context, Json
-from ..engine import InputError
+from ..engine import InputError, core
 from ..cell.tool_path import tool_path
 from ..job import robot_time
-from ..planning import apply, grinding, pictures, rounds as plans
+from ..planning import from_file, grinding, pictures, rounds as plans, written
 from ..programs.force_device import ForceDevice
-from ..programs.patch.patch import patch
 from ..programs.writers.writer import zones_written
-from . import job_inputs, result_files
+from . import job_inputs, result_files, stored_facts
 from .belt_machine import BeltMachine
 from .job_data import KEYS as JOB_KEYS, children, inspection, required
 from .kinds import DocumentObject
 from .properties import Key, Output, add_keys, add_outputs, from_job, to_job
 from .proxy import Proxy
 from .raster_path import KEYS as PASSES, RasterPath, settings_of, take
-from .robot_path import RobotPath, force_device, read_again
+from .robot_path import RobotPath, force_device, read_again, roll_of
 
 EXPORTED = "passes.src"  # as what a path is exported
+PLANNING = 0.6  # of the time; the rest reads and simulates what would be written
 
 KEYS = (
     Key("Goal", "Enumeration", "Goal", "plan.goal"),
@@ -68,6 +68,8 @@ OUTPUTS = (
     Output("ProcessTime", "Float", "Plan", "what the robot takes as planned, s"),
     Output("Rates", "StringList", "Plan", "what every round found"),
     Output("Reasons", "StringList", "Plan", "why what is out of tolerance stays so"),
+    Output("FilesShort", "StringList", "Plan", "where its programs, read again, fall short of it"),
+    stored_facts.output("FilesShort", "Plan"),
     Output("Data", "String", "Plan", "figures as JSON", True),
     Output("Paths", "StringList", "Plan", "names of the job's paths", True),
     Output("PathOf", "IntegerList", "Plan", "path of every pose, from 0", True),
@@ -167,6 +169,20 @@ def sources(job: DocumentObject) -> list[str | None]:
     return [path.Source or None for path in paths_of(job)]
 
 
+def entry(path: DocumentObject) -> dict[str, Any] | None:
+    """With what a job reads a path's file as the path does; None where its poses were made here."""
+    if not path.Source:
+        return None
+    roll, direction = roll_of(path)
+    given = {
+        "roll": roll,
+        "roll_direction": direction,
+        "values": json.loads(path.Values) if path.Values else None,
+        **job_inputs.overrides(path),
+    }
+    return {"file": path.Source, **{key: one for key, one in given.items() if one is not None}}
+
+
 def passes_of(job: DocumentObject) -> DocumentObject:
     """The raster path of a job that has no other path; it is the one that is laid anew. Raises InputError."""
     paths = paths_of(job)
@@ -186,6 +202,7 @@ class Work:
     def __init__(self, obj: DocumentObject, job: DocumentObject) -> None:
         self.settings = plans.validate(obj.Proxy.settings(obj))
         self.sources = sources(job)
+        self.read = [entry(path) for path in paths_of(job)]
         self.raster = settings_of(passes_of(job)) if obj.LayPasses else None
         self.planned = fingerprint(obj, job)
 
@@ -197,19 +214,44 @@ class Work:
         words: Mapping[str, str] | None = None,
     ) -> Found:
         """A ``Found`` for a job's data. Raises InputError, Cancelled."""
+        context = context or core.RunContext()
+        searched, whole = {**self.settings, "check": False}, self.settings["check"]
+        first = context.part(0.0, PLANNING if whole else 1.0)
+        ground = None
         if self.raster is None:
-            plan = plans.plan(data, self.settings, context, told, self.sources)
-            return Found(plan, self.planned, words=words)
-        # Zones as the path's export will have them: KRL's, in the form of the job's controller.
-        zones = functools.partial(zones_written, name=EXPORTED, form=robot_time.form(data))
-        ground = grinding.grind(data, self.raster, self.settings, context, told, zones)
-        ground = ground._replace(plan=plans.against(ground.plan, data, context))
-        return Found(ground.plan, self.planned, ground, words)
+            plan = plans.plan(data, searched, first, told, self.sources)
+        else:
+            # Zones as the path's export will have them: KRL's, in the form of the job's controller.
+            zones = functools.partial(zones_written, name=EXPORTED, form=robot_time.form(data))
+            ground = grinding.grind(data, self.raster, searched, first, told, zones)
+            plan = ground.plan
+        checked = None
+        if whole:
+            with job_inputs.scratch_folder() as folder:
+                checked = from_file.check(
+                    plan,
+                    folder,
+                    functools.partial(
+                        written.entries, folder=folder, read=self.read, suffix=Path(EXPORTED).suffix
+                    ),
+                    context.part(PLANNING, 1.0),
+                    told,
+                    before=ground is None,
+                    refine=False,
+                )
+            plan = checked.plan
+        if ground is not None:
+            if checked is not None:
+                plan = plan._replace(checked={"after": checked.figures})
+            plan = plans.against(plan, data, context)
+            ground = ground._replace(plan=plan)
+        return Found(plan, self.planned, ground, words, checked=checked)
 
 
 class Found:
     """A plan with what the document keeps of it; made in any thread. ``words``: as ``pictures.WORDS``; ``ground``: a
-    ``grinding.Ground``, where the passes were laid anew."""
+    ``grinding.Ground``, where the passes were laid anew; ``checked``: what its programs do, which are the plan's figures then;
+    ``result``: of the planned job, at its own resolution."""
 
     def __init__(
         self,
@@ -218,8 +260,11 @@ class Found:
         ground: grinding.Ground | None = None,
         words: Mapping[str, str] | None = None,
         context: Context = None,
+        checked: from_file.Checked | None = None,
     ) -> None:
         self.plan, self.planned, self.ground = plan, planned, ground
+        self.result = plan.after if checked is None else checked.planned.after
+        self.checked = checked
         drawn = pictures.draw(plan, context)
         whole = pictures.composed(drawn, plan.why["shares"], words)
         self.pictures = result_files.Written({"Picture": whole, "Strip": pictures.strip(drawn)})
@@ -239,7 +284,10 @@ def store(obj: DocumentObject, job: DocumentObject, found: Found) -> None:
     obj.InTolerance = 100.0 * after["in_tolerance"]
     obj.ProcessTimeBefore, obj.ProcessTime = before["process_time_s"], after["process_time_s"]
     tried = {} if found.ground is None else {"tried": found.ground.tried}
-    obj.Data = json.dumps({**summary, **tried}, allow_nan=False)
+    checked = found.checked
+    files = {} if checked is None else {"from_file": checked.entry}
+    stored_facts.store(obj, "FilesShort", [*checked.short, *checked.notes] if checked else [])
+    obj.Data = json.dumps({**summary, **tried, **files}, allow_nan=False)
     obj.Rates = [
         f"{'coarse: ' if one.get('resolution') == 'coarse' else ''}"
         f"{100.0 * one['in_tolerance']:.1f} %, rms {one['rms_mm']:.3f} mm, {one['process_time_s']:.1f} s"
@@ -267,7 +315,7 @@ def store(obj: DocumentObject, job: DocumentObject, found: Found) -> None:
     given = np.concatenate([one["forces"] for one in commands.arrays])
     obj.Kept = tuple(bool(value) for value in (given < 0) & (factor == 1.0))
     obj.Changes = json.dumps(
-        [apply.changes(plan, k) if source else [] for k, source in enumerate(commands.sources)],
+        [written.changes(plan, k) if source else [] for k, source in enumerate(commands.sources)],
         allow_nan=False,
     )
     points, triangles, states = _left(plan)
@@ -378,22 +426,13 @@ def write_programs(obj: DocumentObject, folder: Path | str) -> tuple[list[Path],
         for number, (source, changes, output, device) in enumerate(todo):
             tried = Path(scratch, str(number))
             tried.mkdir()
-            _write_program(source, changes, tried / output.name, device)
+            written.write_changed(source, changes, tried / output.name, device)
     for source, changes, output, device in todo:
-        _write_program(source, changes, output, device)
+        try:
+            written.write_changed(source, changes, output, device)
+        except OSError as error:
+            raise cannot_be_written(output, error) from None
     return [one[2] for one in todo], without
-
-
-def _write_program(
-    source: str, changes: Sequence[Any], output: Path, device: ForceDevice | None
-) -> None:
-    try:
-        if changes:
-            patch(source, changes, output, device)
-        else:
-            write_whole(output, Path(source).read_bytes())
-    except OSError as error:
-        raise cannot_be_written(output, error) from None
 
 
 def _check_program(path: DocumentObject, output: Path, others: Sequence[Path]) -> None:

@@ -242,7 +242,7 @@ def set_arrays(obj: DocumentObject, arrays: Mapping[str, Array]) -> None:
     obj.Planned = False
 
 
-def _roll(obj: DocumentObject) -> tuple[str | None, list[float] | None]:
+def roll_of(obj: DocumentObject) -> tuple[str | None, list[float] | None]:
     """The roll as ``languages.roll.lay`` takes it; held, it is not asked for: most programs have none."""
     direction = list(obj.RollDirection) if obj.Roll == "fixed" else None
     return None if obj.Roll == "hold" else obj.Roll, direction
@@ -250,7 +250,7 @@ def _roll(obj: DocumentObject) -> tuple[str | None, list[float] | None]:
 
 def roll_text(obj: DocumentObject) -> str:
     """The roll that is asked for, as ``RollOfPoses`` keeps it."""
-    rule, direction = _roll(obj)
+    rule, direction = roll_of(obj)
     return f"{rule or 'hold'}{'' if direction is None else f' {direction}'}"
 
 
@@ -293,7 +293,7 @@ def read_arrays(
 def read_again(obj: DocumentObject) -> dict[str, Array]:
     """The arrays that the file of a RobotPath gives now, as the object reads it. Raises InputError, Cancelled."""
     values = json.loads(obj.Values) if obj.Values else None
-    return read_arrays(obj.Source, *_roll(obj), values, force_device(obj))[1]
+    return read_arrays(obj.Source, *roll_of(obj), values, force_device(obj))[1]
 
 
 def force_device(obj: DocumentObject) -> ForceDevice | None:
@@ -329,7 +329,7 @@ def follow(obj: DocumentObject) -> None:
     """
     source = obj.SourceObject
     program = freecad_path.program_of(source)
-    lay(program, *_roll(obj))
+    lay(program, *roll_of(obj))
     arrays = program.path_arrays(DEFAULT_FEED)
     count = len(arrays["frames"])
     if count < 2:
@@ -361,7 +361,7 @@ def load_program(
     if given is not None:
         kept = json.dumps(given, allow_nan=False)
     values_kept = json.loads(kept) if kept else None
-    program, arrays = read_arrays(path, *_roll(obj), values_kept, force_device(obj))
+    program, arrays = read_arrays(path, *roll_of(obj), values_kept, force_device(obj))
     if obj.Machine is not None:
         program.check_holding(obj.Machine.Holding)
     set_arrays(obj, arrays)

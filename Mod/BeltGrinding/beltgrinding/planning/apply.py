@@ -18,8 +18,7 @@ from ..engine import InputError, core
 from ..job.poses import program_name
 from ..job.settings import Job
 from ..job.typed import typed
-from ..programs.patch.patch import patch
-from . import pictures, rounds as plans
+from . import pictures, rounds as plans, written
 
 if TYPE_CHECKING:
     from .rounds import Plan
@@ -54,11 +53,14 @@ def write(
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise cannot_be_written(folder, error) from None
-    programs, written, warnings = [], [], []
+    programs: list[dict[str, Any]] = []
+    names_written: list[str] = []
+    warnings: Facts = []
     for k, (planned, source, name) in enumerate(zip(found.job["programs"], sources, names)):
         entry, reason = planned, None
         if source is not None and name is not None:
-            entry, reason = _patched(found, k, source, folder / name, planned)
+            given = found.commands.job["programs"][k]
+            entry, reason = written.write_read(found, k, source, folder / name, given)
         if reason is not None:
             warnings.append(
                 core.Fact(
@@ -71,7 +73,7 @@ def write(
                 )
             )
         elif name is not None:
-            written.append(name)
+            names_written.append(name)
         programs.append(entry)
     job = json.dumps({**found.job, "programs": programs}, indent=1, allow_nan=False)
     found.after.write(folder / RESULT, force, read)
@@ -91,7 +93,7 @@ def write(
             write_whole(folder / name, data)
         except OSError as error:
             raise cannot_be_written(folder / name, error) from None
-    return written, warnings
+    return names_written, warnings
 
 
 def _names(sources: Sequence[str | None]) -> list[str | None]:
@@ -147,55 +149,6 @@ def _is_plan(path: Path) -> bool:
     except (OSError, ValueError, RecursionError):
         return False
     return isinstance(found, dict) and {"better", "rounds", "checked"} <= set(found)
-
-
-def _patched(
-    found: Plan, number: int, source: str, output: Path, planned: dict[str, Any]
-) -> tuple[dict[str, Any], InputError | None]:
-    """(the job's entry of a program, why its file could not be written or None)."""
-    wanted = changes(found, number)
-    program = found.commands.job["programs"][number]
-    try:
-        if "values" in program and not isinstance(program["values"], str):
-            raise InputError("planning.inline_values", "its values stand in the job")
-        if wanted:
-            patch(source, wanted, output, found.commands.device)
-        else:
-            write_whole(output, Path(source).read_bytes())
-    except OSError as error:
-        raise cannot_be_written(output, error) from None
-    except InputError as error:
-        return planned, error
-    entry = {**program, "file": output.name}
-    if any("speed_mm_s" in change for change in wanted):
-        entry.pop("feed_mm_s", None)
-    if any("force_N" in change for change in wanted):
-        entry.pop("force_N", None)
-    return entry, None
-
-
-def changes(found: Plan, number: int) -> list[dict[str, Any]]:
-    """What ``patch`` is to change in a program's file: the feeds and forces that are not the file's any more."""
-    commands, result = found.commands, []
-    program = commands.job["programs"][number]
-    moving = np.zeros(len(commands), dtype=bool)
-    moving[commands.group[~commands.rapid]] = True
-    differ, forces = plans.changed(found, files=True), commands.written(
-        commands.force(found.factors)
-    )
-    pressed = bool((found.factors[commands.program == number] != 1.0).any())
-    for k in np.flatnonzero((commands.program == number) & moving):
-        if differ[k] or "feed_mm_s" in program or (pressed and "force_N" in program):
-            change: dict[str, Any] = {
-                "line": int(commands.lines[int(np.argmax(commands.group == k))])
-            }
-            change["speed_mm_s"] = float(found.new[k])
-            if not commands.by_hand and (
-                found.factors[k] != 1.0 or (pressed and "force_N" in program)
-            ):
-                change["force_N"] = float(forces[k])
-            result.append(change)
-    return result
 
 
 def feeds_csv(found: Plan) -> str:

@@ -47,6 +47,8 @@ class Checked(NamedTuple):
     """A plan by what its files do."""
 
     plan: Plan  # its results, and why something stays out of tolerance, are the files'
+    planned: Plan  # the same plan by its own last round
+    figures: dict[str, Any]  # of what the files do
     entry: dict[str, Any]  # of plan.json
     short: Facts  # where the files fall short of what was planned, and why
     notes: Facts
@@ -97,12 +99,14 @@ def check(
     folder: Path | str,
     write: Write,
     context: Context = None,
-    told: Callable[[Json], object] | None = None,
+    told: Callable[[dict[str, Any]], object] | None = None,
     before: bool = True,
+    refine: bool = True,
 ) -> Checked:
     """Reads and simulates the programs of a ``Plan`` that ``write(plan)`` writes, which gives their entries in a job in
     ``folder``; where they fall short the plan goes on, and is written again if that is better. ``before``: the job as it was
-    is simulated likewise; ``told``: as ``rounds.plan`` takes it, and with the figures of each reading, whose key ``from_file`` is true. Raises InputError, Cancelled.
+    is simulated likewise; ``told``: as ``rounds.plan`` takes it, and with the figures of each reading, whose key ``from_file`` is true.
+    ``refine``: the plan may go on at half the spacing. Raises InputError, Cancelled.
     """
     context = context or core.RunContext()
     best = _read(found, write(found), folder, False, context.part(0.0, 0.3))
@@ -110,7 +114,7 @@ def check(
     notes: Facts = []
     # Forces that a program's own file has no place for keep its poses in the job (``apply``).
     missing = not best.forces and bool(best.short) and not any(found.commands.sources)
-    coarse = abs(best.sampling) > SAMPLING or (bool(best.short) and not missing)
+    coarse = refine and (abs(best.sampling) > SAMPLING or (bool(best.short) and not missing))
     if missing or coarse:
         job, settings, start = _goes_on(best, missing, coarse, context)
         planned = rounds.plan(job, settings, context.part(0.3, 0.7), told, start=start)
@@ -146,7 +150,7 @@ def check(
         "short": [str(one) for one in best.short],
         "notes": [str(one) for one in notes],
     }
-    return Checked(plan, entry, best.short, notes)
+    return Checked(plan, best.plan, best.figures, entry, best.short, notes)
 
 
 def _own_time(plan: Plan) -> bool:
@@ -154,7 +158,7 @@ def _own_time(plan: Plan) -> bool:
     return bool(plan.settings["timing"] == "job")
 
 
-def _tell(told: Callable[[Json], object] | None, read: _Read) -> None:
+def _tell(told: Callable[[dict[str, Any]], object] | None, read: _Read) -> None:
     if told is not None:
         told({**read.figures, "from_file": True})
 
@@ -212,7 +216,7 @@ def _goes_on(
     settings: dict[str, Any] = {**plan.settings, "check": False, "rounds": ROUNDS}
     factors = plan.factors
     if missing:
-        listed = [{"poses": poses.list_poses(one)} for one in _arrays(best.data)]
+        listed = [{"poses": poses.list_poses(one)} for one in _given(best.data)]
         kept = [{"name": one.name} if one.name else {} for one in typed(job).programs]
         job = {**job, "programs": [{**a, **b} for a, b in zip(kept, listed)]}
         settings.update(force_min_N=0.0, force_max_N=0.0)
@@ -258,17 +262,24 @@ def _why(read: _Read, context: core.RunContext) -> dict[str, Any]:
 
 
 def _arrays(data: Json) -> list[dict[str, Array]]:
-    """Of each program of a job, as ``poses.program_arrays``, forces of the job where it sets none."""
+    """As ``_given``, forces of the job where a program sets none."""
+    force = float(typed(data).belt_machine.force_N)
+    return [
+        {**one, "forces": np.where(one["forces"] < 0.0, force, one["forces"])}
+        for one in _given(data)
+    ]
+
+
+def _given(data: Json) -> list[dict[str, Array]]:
+    """Of each program of a job, as ``poses.program_arrays``."""
     job = typed(data)
-    found = []
-    for k, program in enumerate(job.programs):
-        pose_of = robots.pose_function(data["robot"])
-        one = poses.program_arrays(
+    pose_of = robots.pose_function(data["robot"])
+    return [
+        poses.program_arrays(
             program, program_name(job, k), [], pose_of, job.cell.holding, of_job(job)
         )
-        force = float(job.belt_machine.force_N)
-        found.append({**one, "forces": np.where(one["forces"] < 0.0, force, one["forces"])})
-    return found
+        for k, program in enumerate(job.programs)
+    ]
 
 
 def _same(mine: list[dict[str, Array]], its: list[dict[str, Array]], name: str, by: float) -> bool:

@@ -519,7 +519,7 @@ def _tell_no_room(result: dict[str, Any], clearing: Clearing, warnings: Facts) -
     )
 
 
-def program(result: dict[str, Any], tool: str = "", base: str = "") -> Program:
+def program(result: Json, tool: str = "", base: str = "") -> Program:
     """The path as a ``programs.Program``, for ``programs.write_program``. ``tool``, ``base``: what its
     frames are, in words.
     """

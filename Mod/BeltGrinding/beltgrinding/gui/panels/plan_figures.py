@@ -7,12 +7,13 @@ from typing import Any
 
 import FreeCADGui as Gui
 
-from ...objects import preferences
+from ...objects import preferences, stored_facts
 from ...objects.kinds import DocumentObject
 from ...planning import pictures, reasons
 from ..common.compat import QtCore, QtGui, translate
 from ..charts.feed_chart import FeedChart
 from ..common.kinds import Json, Table, Texts
+from ..common.report_language import language
 from ..widgets.picture_label import PictureLabel
 
 LARGE = 0.9  # of the screen
@@ -40,9 +41,8 @@ class PlanFigures(QtGui.QWidget):
             translate("BeltGrinding", "Before"),
             translate("BeltGrinding", "Planned"),
         )
-        self.checked = QtGui.QLabel(
-            translate("BeltGrinding", "Both simulated at half the spacing and step.")
-        )
+        self.checked = QtGui.QLabel()
+        self.checked.setObjectName("checked")
         self.checked.setWordWrap(True)
         self.reasons = QtGui.QLabel()
         self.reasons.setObjectName("reasons")
@@ -72,13 +72,14 @@ class PlanFigures(QtGui.QWidget):
                 item = QtGui.QTableWidgetItem(text)
                 item.setToolTip(_passes(one))
                 self.rounds.setItem(row, column, item)
-            number += "change" not in one
+            number += "change" not in one and "from_file" not in one
         _fit(self.rounds)
 
     def show_plan(self, obj: DocumentObject) -> None:
         """What a Plan object holds."""
         self.obj, data = obj, obj.Proxy.data(obj)
-        self.show_rounds([*data.get("tried", []), *data["rounds"]])
+        files = [{**data["from_file"], "from_file": True}] if "from_file" in data else []
+        self.show_rounds([*data.get("tried", []), *data["rounds"], *files])
         told = data["checked"] or data
         before, after = told["before"], told["after"]
 
@@ -115,6 +116,7 @@ class PlanFigures(QtGui.QWidget):
         self.table.show()
         _fit(self.table)
         self.checked.setVisible(bool(data["checked"]))
+        self.checked.setText("\n".join(_checked(obj, bool(files))))
         shares = data["out_of_tolerance"]
         told = [
             f'<span style="color:#{pictures.COLOURS[state] >> 8:06x}">■</span> '
@@ -162,6 +164,8 @@ def _round(number: int, one: Json) -> tuple[str, str, str, str]:
             name += f" × {one['repeats']}"
         return name, share, "", ""
     name = str(number) if number else translate("BeltGrinding", "now")
+    if "from_file" in one:
+        name = translate("BeltGrinding", "file")
     if "levels" in one:
         name = translate("BeltGrinding", "{} feeds").format(one["levels"])
     if one.get("resolution") == "coarse":
@@ -169,6 +173,17 @@ def _round(number: int, one: Json) -> tuple[str, str, str, str]:
     unit = preferences.deviation_unit()
     rms = f"{one['rms_mm'] / unit.size:.{unit.decimals}f}"
     return name, share, rms, f"{one['process_time_s']:.1f}"
+
+
+def _checked(obj: DocumentObject, files: bool) -> list[str]:
+    """How both columns were found, and where the programs' files fall short of the rounds."""
+    if not files:  # a plan of an earlier version
+        return [translate("BeltGrinding", "Both simulated at half the spacing and step.")]
+    text = translate(
+        "BeltGrinding",
+        "Both simulated at half the spacing and step; planned: the program as it is written, read again.",
+    )
+    return [text, *stored_facts.sentences(obj, "FilesShort", language())]
 
 
 def _passes(one: Json) -> str:

@@ -246,7 +246,7 @@ class PlanPanel(RunPanel):
             if found is None:
                 api.apply_plan(self.obj)
             else:
-                api.apply_plan(self.obj, found.plan.after, found.ground)
+                api.apply_plan(self.obj, found.result, found.ground)
             if found is not None and made:
                 lay_deviation(self.job)
         self._open()

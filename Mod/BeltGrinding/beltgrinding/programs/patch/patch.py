@@ -9,25 +9,20 @@ from __future__ import annotations
 import csv
 import io
 import math
-import os
 import tempfile
 from bisect import bisect_right
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeVar
 
 import numpy as np
 
-from ...base.files import cannot_be_written, write_whole
 from ...base.kinds import Json
 from ...base.regular_files import shown
-from ..given import beside as values_beside
 from ..program import Fact, ProgramError, bytes_of, name_of
-from ..languages.krl.data_lists import others as krl_lists
-from ..languages.rapid import modules as rapid_modules
 from ..registry import read_program
-from . import forces
+from . import forces, neighbours
 from .text import SMALL, Overlap, Shift, Source, Work
 
 if TYPE_CHECKING:
@@ -54,6 +49,9 @@ ITS = {
     "pose": Fact("programs.patch.pose", "its pose"),
     "orientation": Fact("programs.patch.orientation", "its orientation"),
 }
+
+
+T = TypeVar("T")
 
 
 class Language(Protocol):
@@ -220,37 +218,74 @@ def patch(
             "{file}: two changes of the same place; give the changes one by one",
             file=program.file,
         ) from None
-    beside = _data_file(path) if program.language == "KUKA KRL" else None
-    with tempfile.TemporaryDirectory() as folder:
-        if beside:
-            (Path(folder) / beside.name).write_bytes(beside.read_bytes())
-        for other in _seen(path, program.language):
-            (Path(folder) / other.name).write_bytes(other.read_bytes())
-        copy = Path(folder) / path.name
-        values = values_beside(path)
-        copy.write_bytes(written)
-        again = read_program(
-            copy, values=values if os.path.isfile(values) else None, force_device=force_device
-        )
-    report = _verify(program, again, work, source, module)
-    _write(output, written, beside, path)
-    return report
+    _check_suffix(path, output)
+    return _put(
+        path,
+        written,
+        output,
+        program.language,
+        force_device,
+        lambda again: _verify(program, again, work, source, module),
+    )
 
 
-def _seen(path: Path, language: str) -> Sequence[Path]:
-    """Other files that the reading of a program looks at."""
-    if language == "KUKA KRL":
-        return [other for other, _ in krl_lists(path)[0]]
-    return rapid_modules.files(path) if language == "ABB RAPID" else []
+def copy(path: Path | str, output: Path | str, force_device: ForceDevice | None = None) -> None:
+    """Writes the program in ``path`` to ``output`` as it is, with the files without which it would read otherwise. Raises
+    ProgramError."""
+    path, output = Path(path), Path(output)
+    program = read_program(path, force_device=force_device)
+
+    def same(again: Program) -> None:
+        if _content(again) != _content(program):
+            raise ProgramError(
+                "programs.patch.reads_differently",
+                "{file}: the changed program does not read like the original; it is not written",
+                file=program.file,
+            )
+
+    _put(path, path.read_bytes(), output, program.language, force_device, same)
 
 
-def _data_file(path: Path) -> Path | None:
-    stem = path.stem.lower()
-    found = [p for p in path.parent.glob("*") if p.suffix.lower() == ".dat"]
-    return next((p for p in sorted(found) if p.stem.lower() == stem), None)
+def _content(program: Program) -> list[object]:
+    return [
+        *sorted(problem.message for problem in program.problems),
+        *(
+            (m.kind, m.line, m.speed_mm_s, m.force_N, None if m.pose is None else m.pose.tolist())
+            for m in program.motions
+        ),
+    ]
 
 
-def _write(output: Path, written: bytes, beside: Path | None, path: Path) -> None:
+def _put(
+    path: Path,
+    written: bytes,
+    output: Path,
+    language: str,
+    device: ForceDevice | None,
+    check: Callable[[Program], T],
+) -> T:
+    """Writes a program as ``output``, once ``check`` has seen it read again: with the files that are its own, and if it needs
+    them with others that lie beside ``path``. Returns what ``check`` does. Raises ProgramError."""
+    alone, further = neighbours.own(path, language), neighbours.others(path, language)
+    for files, last in ((alone, not further), ([*alone, *further], True)):
+        with tempfile.TemporaryDirectory() as folder:
+            for file in files:
+                Path(folder, file.name).write_bytes(file.read_bytes())
+            tried = Path(folder, path.name)
+            tried.write_bytes(written)
+            try:
+                report = check(read_program(tried, force_device=device))
+            except ProgramError:
+                if last:
+                    raise
+                continue
+        neighbours.put(files, path, output)
+        neighbours.write(output, written)
+        return report
+    raise AssertionError("the last one is written, or raises")
+
+
+def _check_suffix(path: Path, output: Path) -> None:
     if output.suffix.lower() != path.suffix.lower():
         raise ProgramError(
             "programs.patch.suffix",
@@ -258,27 +293,6 @@ def _write(output: Path, written: bytes, beside: Path | None, path: Path) -> Non
             file=shown(output),
             suffix=path.suffix,
         )
-    if beside:  # a module's poses lie in its data list: one without the other is worth nothing
-        copy = output.with_suffix(beside.suffix)
-        data = bytes_of(beside, "KRL")
-        if not copy.exists():
-            _write_whole(copy, data)
-        elif bytes_of(copy, "KRL") != data:
-            raise ProgramError(
-                "programs.patch.beside_differs",
-                "{file}: is there already and differs from {name}",
-                file=shown(copy),
-                name=name_of(beside),
-            )
-    _write_whole(output, written)
-
-
-def _write_whole(path: Path, data: bytes) -> None:
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write_whole(path, data)
-    except OSError as error:
-        raise ProgramError.of(cannot_be_written(shown(path), error)) from None
 
 
 def _work(program: Program, changes: Iterable[Json], source: Source, module: Language) -> Work:

@@ -15,7 +15,7 @@ constexpr double kOnLayers = 0.75;  // of these where layers bear the belt: pres
 // where its load acts keep the stiffness symmetric, and are that within 5 % up to k t = 4.
 constexpr double kThick = 0.2;
 // Of that, on a free belt: where a wrap ends, finite elements lie between a thin sheet and a thick
-// one. A fit to five of them, not a theory (docs/free-belt.md).
+// one. A fit to five of them, not a theory (docs/belt-method.md).
 constexpr double kFree = 0.25;
 constexpr double kUnbalanced = 0.3;  // of the tolerance: forces that are left
 constexpr double kRough = 0.02;      // tolerance where only the rows that bear are asked for

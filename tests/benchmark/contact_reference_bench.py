@@ -1,4 +1,4 @@
-"""Every contact model on every finite-element reference of a wheel, as docs/contact.md shows it:
+"""Every contact model on every finite-element reference of a wheel, as docs/contact-accuracy.md shows it:
 tools/bench contact_reference. Approach at the reference's force; in brackets L1 of the pressure on cells of
 1 mm (flat, cyl), or of the forces of rows of 1 mm.
 """

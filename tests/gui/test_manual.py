@@ -1,4 +1,4 @@
-"""The steps of docs/workbench.md on the example blade, as a person does them; its pictures are taken here."""
+"""The steps of docs/workbench*.md on the example blade, as a person does them; its pictures are taken here."""
 
 import importlib.util
 import json

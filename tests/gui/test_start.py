@@ -82,7 +82,7 @@ def test_the_manual_leads_from_page_to_page_and_shows_its_pictures():
     menu("Help")
     view = field("BeltGrinding_ManualView")
     home = view.toPlainText()
-    view.setSource(view.source().resolved(QtCore.QUrl("workbench.md")))
+    view.setSource(view.source().resolved(QtCore.QUrl("workbench-job.md")))
     settle()
     assert "Sample spacing" in view.toPlainText()
     blocks, images = view.document().begin(), []

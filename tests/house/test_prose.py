@@ -1,4 +1,4 @@
-"""The manual keeps to short sentences, short paragraphs, and none of our idioms: tests/support/prose.py."""
+"""The manual keeps to short sentences, paragraphs and pages, and to none of our idioms: tests/support/prose.py."""
 
 import pytest
 
@@ -16,6 +16,25 @@ PAGES = [
 def test_a_page_reads_well(page):
     wrong = prose.problems((prose.ROOT / page).read_text(encoding="utf-8"))
     assert not wrong, "\n".join(wrong)
+
+
+@pytest.mark.parametrize("page", prose.guide())
+def test_a_page_of_the_guide_is_short(page):
+    found = prose.length((prose.ROOT / "docs" / page).read_text(encoding="utf-8"))
+    assert found <= prose.MOST_GUIDE, f"{found} words: divide it by what the reader does"
+
+
+def test_the_manual_is_short():
+    pages = (prose.ROOT / "docs").rglob("*.md")
+    found = sum(prose.length(path.read_text(encoding="utf-8")) for path in pages)
+    assert found <= prose.MOST_MANUAL
+
+
+def test_what_is_counted():
+    page = "# Head\n\nOne two `three four`.\n\n    code\n\n| a | b |\n\n```\ncode\n```\n- five\n"
+    assert prose.length(page) == 4  # code between words counts as one
+    assert {"workbench-job.md", "languages/krl.md", "planning.md"} <= set(prose.guide())
+    assert not {"methods.md", "macro.md", "architecture.md"} & set(prose.guide())
 
 
 def test_what_it_finds():

@@ -1,4 +1,4 @@
-"""Reads pages of the manual as sentences: how long they are, and which idioms of ours stand in them.
+"""Reads pages of the manual as sentences: how long they are, and which idioms of ours stand in them; counts words.
 
     /usr/bin/python3 tests/support/prose.py [PAGE...]     # what is wrong, and the figures
 """
@@ -7,10 +7,17 @@ import re
 import sys
 from pathlib import Path
 
+import yaml
+
 ROOT = Path(__file__).resolve().parents[2]
 MOST_WORDS = 25  # in a sentence
 MOST_MEAN = 16  # words in a sentence, of a page
 MOST_PARAGRAPH = 90  # words
+MOST_GUIDE = (
+    700  # words of a page of the guide, all but theory, reference and how the house is built
+)
+MOST_MANUAL = 35_000  # words of all pages of docs/
+NO_GUIDE = ("Macros and programs", "Methods and accuracy", "How it is built", "The project")
 IDIOMS = re.compile(
     r"\b(is told|are told|stands? in|that are none|that is none|which one|what .{1,40} is, is|comes? to lie|"
     r"does so well|of which nothing|is none|are none)\b"
@@ -52,6 +59,23 @@ def words(text):
     return re.findall(r"[^\W_][\w'-]*", text)
 
 
+def length(page):
+    """Words of a page's prose, without code and tables."""
+    return sum(len(paragraph.split()) for paragraph in paragraphs(page))
+
+
+def guide():
+    """The pages of docs/ that are the guide: those in the menu of mkdocs.yml outside of ``NO_GUIDE``."""
+    menu = yaml.safe_load((ROOT / "mkdocs.yml").read_text(encoding="utf-8"))["nav"]
+    sections = [one for part in menu for name, one in part.items() if name not in NO_GUIDE]
+    return [
+        page
+        for section in sections
+        for entry in ([{"": section}] if isinstance(section, str) else section)
+        for page in entry.values()
+    ]
+
+
 def problems(page):
     """Of a page's text: a line each."""
     found, lengths = [], []
@@ -75,6 +99,6 @@ if __name__ == "__main__":
     pages = [Path(one) for one in sys.argv[1:]] or sorted((ROOT / "docs").rglob("*.md"))
     for path in pages:
         wrong = problems(path.read_text(encoding="utf-8"))
-        print(f"{path}: {len(path.read_text().split())} words, {len(wrong)} problems")
+        print(f"{path}: {length(path.read_text())} words, {len(wrong)} problems")
         if len(sys.argv) > 1:
             print("\n".join(f"  {one}" for one in wrong))

@@ -92,7 +92,7 @@ TLS = ("--tls-ca-file", "--tls-cert", "--tls-key")
 
 
 def make_key(path):
-    """A file with a key and its certificate, as docs/study.md has it made."""
+    """A file with a key and its certificate, as docs/study-run.md has it made."""
     words = "req -x509 -newkey rsa:2048 -nodes -days 2 -subj /CN=study".split()
     command = ["openssl", *words, "-keyout", str(path), "-out", str(path)]
     subprocess.run(command, check=True, capture_output=True, umask=0o077)

@@ -117,7 +117,7 @@ def test_the_way_over_a_rib(ribbed, name, least, most):
     dynamics = presets.apply({}, actuator=name)["belt_machine"]["force_dynamics"]
     coarse, *_ = over_the_rib(ribbed, dynamics, 0.5)
     volume, *forces = over_the_rib(ribbed, dynamics, 0.25)
-    assert forces == pytest.approx([least, most], abs=1.5)  # as docs/methods.md has them
+    assert forces == pytest.approx([least, most], abs=1.5)  # as docs/force-method.md has them
     assert coarse == pytest.approx(volume, rel=0.01)
 
 

@@ -2,8 +2,12 @@
 
 import json
 import re
+import shlex
 
 from support.freecad import ROOT
+
+HEADING = re.compile(r"^#+ (.*)$", re.M)
+COMMAND = re.compile(r"^(?: {4})?(?:\$ )?(?:tools/)?beltgrind (.*)$", re.M)  # a line of its own
 
 
 def blocks(page, heading):
@@ -34,6 +38,22 @@ def test_the_readme_names_commands_that_there_are():
         assert cli.command_line().parse_args(words[1:]).command == words[1]
 
 
+def test_every_command_of_the_manual_is_one_that_the_command_line_takes(capsys):
+    from beltgrinding import cli
+
+    parser, refused, taken = cli.command_line(), [], 0
+    for page in sorted((ROOT / "docs").rglob("*.md")):
+        for line in COMMAND.findall(page.read_text(encoding="utf-8")):
+            words = shlex.split(re.split(r" [>|] ", line)[0], comments=True)
+            try:
+                parser.parse_args(words)
+                taken += 1
+            except SystemExit:
+                refused.append(f"{page.name}: {line}: {capsys.readouterr().err}")
+    assert not refused, "\n".join(refused)
+    assert taken > 40
+
+
 def keys(rule, name=""):
     """(dotted name, rule) of every key of the schema."""
     for key, value in rule.get("properties", {}).items():
@@ -59,7 +79,18 @@ def test_the_job_files_page_has_every_key_with_its_default():
     assert ours - frames <= set(found)
 
 
+def anchors(page):
+    """What a link to a heading of a page (a path) names, as the site makes it."""
+    text = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
+    words = [re.sub(r"[^\w\s-]", "", one).strip().lower() for one in HEADING.findall(text)]
+    return {re.sub(r"[-\s]+", "-", one) for one in words}
+
+
 def test_every_link_of_the_documentation_leads_somewhere():
-    for page in [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md")]:
-        for target in re.findall(r"\]\(([^)#]+)", page.read_text()):
-            assert "://" in target or (page.parent / target).exists(), (page.name, target)
+    roots = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")]
+    for page in [*roots, *(ROOT / "docs").rglob("*.md")]:
+        for target in re.findall(r"\]\(([^)\s]+)\)", page.read_text(encoding="utf-8")):
+            path, _, anchor = target.partition("#")
+            to = page.parent / path if path else page
+            assert "://" in target or to.exists(), (page.name, target)
+            assert not anchor or "://" in target or anchor in anchors(to), (page.name, target)

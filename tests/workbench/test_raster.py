@@ -394,7 +394,7 @@ def test_the_command_line_writes_a_program(tmp_path):
 
 
 def test_the_page_has_every_setting_with_its_default():
-    page = (ROOT / "docs" / "raster.md").read_text()
+    page = (ROOT / "docs" / "raster-settings.md").read_text()
     rows = dict(re.findall(r"^\| (\w+) \| `(.*?)` \|", page, re.M))
     rules = raster.schema()["properties"]
     assert rows == {name: json.dumps(rule["default"]) for name, rule in rules.items()}

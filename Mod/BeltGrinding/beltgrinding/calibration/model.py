@@ -48,7 +48,7 @@ BOUNDS = {
 }
 # Mean and standard deviation of what is known before: weakly, so that the grinds decide and what they
 # leave open does not run away. The published exponents of force, 0.5 to 2.4, and of speed, 1 to 1.7
-# (docs/methods.md), lie within one deviation and, as they are few, half of one; the others lie about
+# (docs/removal-method.md), lie within one deviation and, as they are few, half of one; the others lie about
 # the linear law, and a belt of mean wear that still cuts the half is one deviation off. Break-in takes 23 to 62 % of the cut.
 PRIORS = {
     "pressure_exponent": (1.45, 0.95),

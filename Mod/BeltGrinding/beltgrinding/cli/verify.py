@@ -9,7 +9,7 @@ def add(commands):
     """Adds the command to the parser's ``commands``."""
     verify = commands.add_parser(
         "verify",
-        help="simulate a program as its file has it, under the robot's time (docs/planning.md)",
+        help="simulate a program as its file has it, under the robot's time (docs/verify.md)",
         description="Reads a robot program as its file has it, grinds the job's part with it under the robot's time at "
         "half the spacing, step and contact cells, and says whether the part is good. Exit status 1 where it fails.",
     )

@@ -26,7 +26,7 @@ def make_plan(
     """Plans the feeds (and, where ``ForceMin`` or ``ForceMax`` is set, the forces) with which the job keeps its
     tolerance, with ``LayPasses`` the passes, too, and keeps them in its Plan object, which it returns; ``apply_plan``
     puts them into the paths.
-    ``compute=False`` only makes the object. ``properties``: settings (docs/planning.md) by the names of the
+    ``compute=False`` only makes the object. ``properties``: settings (docs/planning-settings.md) by the names of the
     properties. Raises InputError, Cancelled.
     """
     label, before = FreeCAD.Qt.translate("BeltGrinding", "Plan"), child(job, planned.Plan)

@@ -1,4 +1,4 @@
-"""What a study's table answers: yield, main effects, Sobol indices, the best setting. docs/study.md says what they mean."""
+"""What a study's table answers: yield, main effects, Sobol indices, the best setting. docs/study-answers.md says what they mean."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@
 namespace beltgrinding {
 
 /// A belt that runs free between two rollers, pressed on the work: a thin plate with large
-/// deflections, unilateral, on an obstacle (docs/free-belt.md). The solution's force is that
+/// deflections, unilateral, on an obstacle (docs/belt-method.md). The solution's force is that
 /// along z, its pressure that of a projected area, so that their sum is the force.
 class FreeBelt final : public ContactModel {
   public:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from beltgrinding import cli
+from beltgrinding.engine import InputError
 from beltgrinding.programs.program import ProgramError
 from beltgrinding.programs.patch.patch import patch
 from beltgrinding.programs.registry import read_program
@@ -662,3 +663,48 @@ def test_a_force_of_a_table_is_rounded_as_it_is_written(tmp_path):
     told = patch(name, [{"index": 0, "force_N": 0.4948532}], tmp_path / "new.csv")
     assert told[0]["force_N"] == 0.494853
     assert (tmp_path / "new.csv").read_text().endswith(",0.494853\n")
+
+
+TARGETS = """MODULE targets
+CONST robtarget pa:=[[0,0,0],[0,1,0,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+CONST robtarget pb:=[[10,0,0],[0,1,0,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+ENDMODULE
+"""
+GRIND = """MODULE grind
+{}PROC main()
+MoveL pa,v20,fine,tool0;
+MoveL pb,v20,fine,tool0;
+ENDPROC
+ENDMODULE
+"""
+
+
+@pytest.mark.parametrize("own", [False, True])
+def test_other_modules_go_along_where_it_needs_them(tmp_path, own):
+    constants = "".join(TARGETS.splitlines(True)[1:3]) if own else ""
+    (tmp_path / "grind.mod").write_text(GRIND.format(constants))
+    (tmp_path / "targets.mod").write_text(
+        TARGETS.replace("pa", "pc").replace("pb", "pd") if own else TARGETS
+    )
+    output = tmp_path / "new" / "grind.mod"
+    before = read_program(tmp_path / "grind.mod").motions
+    patch(tmp_path / "grind.mod", [{"line": before[1].line, "speed_mm_s": 5.0}], output)
+    after = read_program(output).motions
+    assert [one.speed_mm_s for one in after] == [20.0, 5.0]
+    assert [one.pose[0, 3] for one in after] == [0.0, 10.0]
+    assert (output.parent / "targets.mod").exists() is not own
+
+
+def test_values_go_along_under_the_output_s_name(tmp_path):
+    text = "DEF p()\n$VEL.CP=0.02\n" + "".join(
+        f"LIN {{X {x},Y 0,Z Z0,A 0,B 0,C 180}}\n" for x in (0, 10)
+    )
+    (tmp_path / "p.src").write_text(text + "END\n")
+    (tmp_path / "p.values.json").write_text('{"variables": {"Z0": 7.0}}')
+    output = tmp_path / "new" / "q.src"
+    patch(tmp_path / "p.src", [{"index": 1, "speed_mm_s": 5.0}], output)
+    assert (output.parent / "q.values.json").exists()
+    assert [one.pose[2, 3] for one in read_program(output).motions] == [7.0, 7.0]
+    (output.parent / "q.values.json").write_text("{}")
+    with pytest.raises(InputError, match="is there already and differs"):
+        patch(tmp_path / "p.src", [{"index": 1, "speed_mm_s": 6.0}], output)

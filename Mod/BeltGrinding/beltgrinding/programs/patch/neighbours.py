@@ -2,36 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from pathlib import Path
 
 from ...base.files import cannot_be_written, write_whole
 from ...base.regular_files import shown
 from ..given import beside as values_beside
-from ..languages.krl.data_lists import others as krl_lists, own as krl_list
-from ..languages.rapid import modules as rapid_modules
+from ..languages.side_files import side_files
 from ..program import ProgramError, bytes_of, name_of
 
 
-def own(path: Path, language: str) -> list[Path]:
+def own(path: Path) -> list[Path]:
     """Those that are this program's alone: without them it has other poses, or none."""
-    found = [values_beside(path)]
-    if language == "KUKA KRL" and (data := krl_list(path)):
-        found.append(data)
-    return [one for one in found if one.is_file()]
+    named = [one for one in side_files(path) if one.stem.lower() == path.stem.lower()]
+    return [one for one in (values_beside(path), *named) if one.is_file()]
 
 
-def others(path: Path, language: str) -> Sequence[Path]:
+def others(path: Path) -> list[Path]:
     """Those of other programs, or of the controller, that its reading may look at."""
-    if language == "KUKA KRL":
-        return [other for other, _ in krl_lists(path)[0]]
-    return rapid_modules.files(path) if language == "ABB RAPID" else []
+    mine = own(path)
+    return [one for one in side_files(path) if one not in mine]
 
 
 def put(files: Iterable[Path], path: Path, output: Path) -> None:
     """Copies what goes along with ``path`` beside ``output``; what is the program's own follows its name. Raises ProgramError
     where another file has a name."""
-    mine = own(path, "KUKA KRL")
+    mine = own(path)
     for file in files:
         named = output.stem + file.name[len(path.stem) :] if file in mine else file.name
         copy, data = output.with_name(named), bytes_of(file, name_of(file))

@@ -223,7 +223,6 @@ def patch(
         path,
         written,
         output,
-        program.language,
         force_device,
         lambda again: _verify(program, again, work, source, module),
     )
@@ -243,7 +242,7 @@ def copy(path: Path | str, output: Path | str, force_device: ForceDevice | None 
                 file=program.file,
             )
 
-    _put(path, path.read_bytes(), output, program.language, force_device, same)
+    _put(path, path.read_bytes(), output, force_device, same)
 
 
 def _content(program: Program) -> list[object]:
@@ -260,13 +259,12 @@ def _put(
     path: Path,
     written: bytes,
     output: Path,
-    language: str,
     device: ForceDevice | None,
     check: Callable[[Program], T],
 ) -> T:
     """Writes a program as ``output``, once ``check`` has seen it read again: with the files that are its own, and if it needs
     them with others that lie beside ``path``. Returns what ``check`` does. Raises ProgramError."""
-    alone, further = neighbours.own(path, language), neighbours.others(path, language)
+    alone, further = neighbours.own(path), neighbours.others(path)
     for files, last in ((alone, not further), ([*alone, *further], True)):
         with tempfile.TemporaryDirectory() as folder:
             for file in files:

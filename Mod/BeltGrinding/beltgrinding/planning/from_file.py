@@ -216,7 +216,11 @@ def _goes_on(
     settings: dict[str, Any] = {**plan.settings, "check": False, "rounds": ROUNDS}
     factors = plan.factors
     if missing:
-        listed = [{"poses": poses.list_poses(one)} for one in _given(best.data)]
+        mine, its = _given(job), _given(best.data)
+        if [len(one["feeds"]) for one in mine] == [len(one["feeds"]) for one in its]:
+            # The job's own feeds: a file has none for rapid motions.
+            its = [{**own, "forces": one["forces"]} for own, one in zip(mine, its)]
+        listed = [{"poses": poses.list_poses(one)} for one in its]
         kept = [{"name": one.name} if one.name else {} for one in typed(job).programs]
         job = {**job, "programs": [{**a, **b} for a, b in zip(kept, listed)]}
         settings.update(force_min_N=0.0, force_max_N=0.0)

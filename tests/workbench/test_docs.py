@@ -9,6 +9,7 @@ import pytest
 from support.freecad import ROOT
 
 BLOCK = re.compile(r"(?:^ {4}.*\n|^\n(?= {4}))+", re.M)
+FENCED = re.compile(r"^```.*?^```$", re.M | re.S)
 HEADING = re.compile(r"^#+ (.*)$", re.M)
 COMMAND = re.compile(r"^(?: {4})?(?:\$ )?(?:tools/)?beltgrind (.*)$", re.M)  # a line of its own
 
@@ -85,6 +86,7 @@ def settings(name):
     """The JSON blocks of a page, indented or fenced, that are whole: values; of keys of a job a dict."""
     text = (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8")
     fenced = re.findall(r"^```json\n(.*?)\n```$", text, re.M | re.S)
+    text = FENCED.sub("", text)
     indented = [re.sub(r"^ {4}", "", one, flags=re.M) for one in BLOCK.findall(text)]
     for one in (one.strip() for one in [*fenced, *indented]):
         if one[0] in '{"' and "..." not in one:
@@ -125,7 +127,7 @@ def test_the_manuals_contact_and_study_are_ones_that_are_taken(tmp_path):
 
 def anchors(page):
     """What a link to a heading of a page (a path) names, as the site makes it."""
-    text = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
+    text = FENCED.sub("", page.read_text(encoding="utf-8"))
     words = [re.sub(r"[^\w\s-]", "", one).strip().lower() for one in HEADING.findall(text)]
     return {re.sub(r"[-\s]+", "-", one) for one in words}
 

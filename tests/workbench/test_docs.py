@@ -4,8 +4,12 @@ import json
 import re
 import shlex
 
+import pytest
+
 from support.freecad import ROOT
 
+BLOCK = re.compile(r"(?:^ {4}.*\n|^\n(?= {4}))+", re.M)
+FENCED = re.compile(r"^```.*?^```$", re.M | re.S)
 HEADING = re.compile(r"^#+ (.*)$", re.M)
 COMMAND = re.compile(r"^(?: {4})?(?:\$ )?(?:tools/)?beltgrind (.*)$", re.M)  # a line of its own
 
@@ -13,8 +17,7 @@ COMMAND = re.compile(r"^(?: {4})?(?:\$ )?(?:tools/)?beltgrind (.*)$", re.M)  # a
 def blocks(page, heading):
     """The indented blocks under a heading of a page, each as a text."""
     part = page.split(f"## {heading}\n")[1].split("\n## ")[0]
-    found = re.findall(r"(?:^ {4}.*\n|^\n(?= {4}))+", part, re.M)
-    return [re.sub(r"^ {4}", "", one, flags=re.M).strip("\n") for one in found]
+    return [re.sub(r"^ {4}", "", one, flags=re.M).strip("\n") for one in BLOCK.findall(part)]
 
 
 def test_the_readme_macro_prints_what_it_says(freecad):
@@ -79,9 +82,52 @@ def test_the_job_files_page_has_every_key_with_its_default():
     assert ours - frames <= set(found)
 
 
+def settings(name):
+    """The JSON blocks of a page, indented or fenced, that are whole: values; of keys of a job a dict."""
+    text = (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8")
+    fenced = re.findall(r"^```json\n(.*?)\n```$", text, re.M | re.S)
+    text = FENCED.sub("", text)
+    indented = [re.sub(r"^ {4}", "", one, flags=re.M) for one in BLOCK.findall(text)]
+    for one in (one.strip() for one in [*fenced, *indented]):
+        if one[0] in '{"' and "..." not in one:
+            yield json.loads(one if one[0] == "{" else f"{{{one}}}")
+
+
+# How a block of a page becomes part of a job.
+PARTS = {
+    "collisions": lambda body: {"cell": {"bodies": [body]}},
+    "finish": lambda zone: {"finish": {}, "inspection": {"zones": [zone]}},
+    **{name: dict for name in ("force-device", "free-belt", "heat", "robot", "verification")},
+}
+
+
+@pytest.mark.parametrize("name", PARTS)
+def test_the_manuals_settings_are_ones_that_a_job_takes(name):
+    from beltgrinding.job import load
+
+    blocks = list(settings(name))
+    assert blocks
+    for one in blocks:
+        job = {"design": {"file": "part.step"}, "programs": [{"poses": []}], **PARTS[name](one)}
+        assert load.validate(job)
+
+
+def test_the_manuals_contact_and_study_are_ones_that_are_taken(tmp_path):
+    from beltgrinding import contact
+    from beltgrinding.studies import making
+
+    (pressed,) = settings("contact")
+    assert contact.validate(pressed)
+    study = next(one for one in settings("study") if "vary" in one)
+    (answers,) = settings("study-answers")
+    job = {"design": {"file": "part.step"}, "programs": [{"poses": []}]}
+    (tmp_path / study["job"]).write_text(json.dumps(job))
+    assert making.validate({**study, **answers}, tmp_path)
+
+
 def anchors(page):
     """What a link to a heading of a page (a path) names, as the site makes it."""
-    text = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
+    text = FENCED.sub("", page.read_text(encoding="utf-8"))
     words = [re.sub(r"[^\w\s-]", "", one).strip().lower() for one in HEADING.findall(text)]
     return {re.sub(r"[-\s]+", "-", one) for one in words}
 

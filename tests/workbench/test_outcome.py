@@ -133,3 +133,16 @@ def test_run_ends_with_the_line_and_status_1_where_it_is_checked(job, tmp_path, 
     assert printed.out == "" and printed.err == ""
     assert run(tmp_path, tight, "--wanted", "101") == 2
     assert "--wanted 101: give a share" in capsys.readouterr().err
+
+
+def test_the_outcome_as_json_for_programs(job, tmp_path, capsys):
+    tight = {**job, "inspection": {"tolerance_mm": [-0.01, 0.01]}}
+    assert run(tmp_path, tight, "--check", "--json") == 1
+    printed = capsys.readouterr()
+    told = json.loads(printed.out)
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text())
+    assert printed.err == "" and not told["pass"] and told["message"].startswith("FAIL: ")
+    assert told["in_tolerance"] == pytest.approx(summary["in_tolerance_area_share"])
+    assert told["in_tolerance"] + told["above"] + told["below"] == pytest.approx(1.0)
+    assert told["process_time_s"] == summary["process_time_s"]
+    assert told["errors"]["gouge"] == 0 and len(told["worst"]["point_mm"]) == 3

@@ -19,6 +19,7 @@ EXAMPLES = {
     "run": (
         "run job.json -o result",
         "run job.json -o result --check",
+        "run job.json -o result --json",
         "run job.json -o result --check --wanted 95",
         "run job.json -o result --belt belt.json",
         "run job.json -o result --force --quiet",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ..base.kinds import Json
 from ..cell import events as event_lists
@@ -14,10 +14,12 @@ COUNTED = ("gouge", "collision")  # always told; of other errors, those that the
 
 
 class Outcome(NamedTuple):
-    """``passed``: the verdict passes and no event is an error. ``told``: the line."""
+    """``passed``: the verdict passes and no event is an error. ``told``: the line. ``errors``: events that are errors, by their
+    kind."""
 
     passed: bool
     told: Fact
+    errors: dict[str, int]
 
 
 def outcome(verdict: Json, events: Sequence[Json], wanted: float = 1.0) -> Outcome:
@@ -29,6 +31,7 @@ def outcome(verdict: Json, events: Sequence[Json], wanted: float = 1.0) -> Outco
         if event["severity"] == "error":
             counts[event["kind"]] = counts.get(event["kind"], 0) + 1
     why = _why(verdict, wanted)
+    errors = dict(counts)
     passed = not any(counts.values()) and not why and _enough(verdict, wanted)
     told = _found(verdict, wanted)
     told = Fact(
@@ -43,8 +46,22 @@ def outcome(verdict: Json, events: Sequence[Json], wanted: float = 1.0) -> Outco
     for one in more + why:
         told = Fact("inspection.one_and_other", "{one}, {other}", one=told, other=one)
     if passed:
-        return Outcome(True, Fact("inspection.passed", "PASS: {found}", found=told))
-    return Outcome(False, Fact("inspection.failed", "FAIL: {found}", found=told))
+        return Outcome(True, Fact("inspection.passed", "PASS: {found}", found=told), errors)
+    return Outcome(False, Fact("inspection.failed", "FAIL: {found}", found=told), errors)
+
+
+def as_json(verdict: Json, found: Outcome) -> dict[str, Any]:
+    """An ``Outcome`` and the shares of the area that it is about, for programs."""
+    worst = verdict["worst"]
+    return {
+        "pass": found.passed,
+        "in_tolerance": verdict["in_share"],
+        "above": verdict["above_share"],
+        "below": verdict["below_share"],
+        "worst": None if worst is None else {k: worst[k] for k in ("value_mm", "point_mm")},
+        "errors": found.errors,
+        "message": str(found.told),
+    }
 
 
 def _enough(verdict: Json, wanted: float) -> bool:

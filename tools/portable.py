@@ -1,6 +1,6 @@
 """Called by `tools/package portable`: portable.py STAGE BUILT OUT.
 
-STAGE is the workbench as the component `addon` installs it; BUILT/modules has the modules for each Python. Their
+STAGE is the workbench as the component `portable` installs it; BUILT/modules has the modules for each Python. Their
 libraries are laid beside them under names of their own, so that those of a FreeCAD in the same process, of other
 versions perhaps, are neither used nor replaced. Writes the zip and the wheels into OUT.
 """
@@ -204,8 +204,8 @@ def stage_portable(stage: Path, built: Path) -> tuple[list[Path], list[str]]:
     modules = sorted((built / "modules").glob("*.so"))
     reader = next(stage.glob(f"{READER}*"))
     reader.rename(stage / READER)
-    for old in [*stage.glob("*.so"), *stage.glob("*.so.json")]:
-        old.unlink()
+    for one in stage.glob("*.so.json"):  # of the module for this Python
+        one.unlink()
     for module in modules:
         shutil.copy(module, stage)
     binaries = [stage / one.name for one in modules] + [stage / READER]

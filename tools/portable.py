@@ -7,6 +7,7 @@ versions perhaps, are neither used nor replaced. Writes the zip and the wheels i
 
 from __future__ import annotations
 
+import functools
 import json
 import re
 import shutil
@@ -95,7 +96,7 @@ def bundle(binaries: list[Path], folder: Path) -> list[Path]:
         for name in output("patchelf", "--print-needed", one).split():
             if name in wanted:
                 output("patchelf", "--replace-needed", name, own_name(name), one)
-            elif FREECADS.fullmatch(name):
+            elif name in libraries or FREECADS.fullmatch(name):
                 output("patchelf", "--remove-needed", name, one)
         rpath = "$ORIGIN" if one in copies else "$ORIGIN/" + folder.name
         output(
@@ -126,15 +127,43 @@ def no_curl(folder: Path) -> Path:
 
 
 def needed(binaries: list[Path], libraries: dict[str, Path]) -> set[str]:
-    """Names of the libraries that are reached, not by way of FreeCAD's."""
+    """Names of the libraries that are reached, not by way of FreeCAD's; those that are named and not used stay out."""
+    within = {name: closure(path, libraries) for name, path in libraries.items()}
+    defined = {name: symbols(path, "--defined-only") for name, path in libraries.items()}
     names: set[str] = set()
     rest = list(binaries)
     while rest:
-        for name in output("patchelf", "--print-needed", rest.pop()).split():
-            if name in libraries and name not in names:
+        binary = rest.pop()
+        wanted = symbols(binary, "--undefined-only")
+        for name in set(named(binary)) & set(libraries) - names:
+            if any(wanted & defined[one] for one in within[name]):
                 names.add(name)
                 rest.append(libraries[name])
     return names
+
+
+@functools.cache
+def named(binary: Path) -> list[str]:
+    """The libraries that it names itself."""
+    return output("patchelf", "--print-needed", binary).split()
+
+
+def closure(path: Path, libraries: dict[str, Path]) -> set[str]:
+    """Names of a library and of all that it names."""
+    names: set[str] = set()
+    rest = [path]
+    while rest:
+        one = rest.pop()
+        new = set(named(one)) & set(libraries) - names
+        names |= new
+        rest += [libraries[name] for name in new]
+    return names | {name for name, other in libraries.items() if other == path}
+
+
+def symbols(path: Path, which: str) -> set[str]:
+    """Dynamic symbols without their versions."""
+    lines = output("nm", "-D", which, path).splitlines()
+    return {line.split()[-1].split("@")[0] for line in lines}
 
 
 def make_unique_symbols_plain(path: Path) -> None:
@@ -167,10 +196,15 @@ def newest_needed(binaries: list[Path], prefix: str) -> str:
 
 
 def licences(origins: list[Path], folder: Path) -> None:
-    """Copies what Debian says of the copyright of each package from which a file comes."""
+    """Copies what Debian says of the copyright of each package from which a file comes; the same text once."""
     folder.mkdir(parents=True, exist_ok=True)
+    first: dict[bytes, str] = {}
     for package in sorted({owner(path) for path in origins}):
-        shutil.copyfile(f"/usr/share/doc/{package}/copyright", folder / f"{package}.txt")
+        text = Path(f"/usr/share/doc/{package}/copyright").read_bytes()
+        same = first.setdefault(text, package)
+        if same != package:
+            text = f"The same as {same}.txt\n".encode()
+        (folder / f"{package}.txt").write_bytes(text)
 
 
 def owner(path: Path) -> str:

@@ -7,7 +7,6 @@ versions perhaps, are neither used nor replaced. Writes the zip and the wheels i
 
 from __future__ import annotations
 
-import functools
 import json
 import re
 import shutil
@@ -24,7 +23,8 @@ READER = "beltgrinding-cad-reader"
 HOST = re.compile(r"(ld-linux.*|lib(c|m|dl|rt|pthread|util|resolv|gcc_s|stdc\+\+|python3.*))\.so.*")
 # FreeCAD's own, in the process already: a second Coin could not draw into its scene.
 FREECADS = re.compile(r"lib(Coin|GL|GLX|OpenGL|GLU|EGL|X11|Xext|Xi)\.so.*")
-CURL = "libcurl.so.4"
+# Never called: HDF5 would read from the net by them, lib3mf's libzip encrypted files. They bring fourteen megabytes.
+ABSENT = ("libcurl.so.4", "libcrypto.so.3")
 PURE = ("jsonschema", "attr", "attrs", "pyrsistent", "_pyrsistent_version.py")
 THREE = Path("/usr/share/javascript/three/three.min.js")
 MOST_MB = 60
@@ -79,11 +79,10 @@ def bundle(binaries: list[Path], folder: Path) -> list[Path]:
         for name, path in paths_of_libraries(binaries).items()
         if not HOST.fullmatch(name) and not FREECADS.fullmatch(name)
     }
-    curl = no_curl(folder.parent)
-    if CURL in libraries:
-        libraries[CURL] = curl
-    wanted = needed(binaries, libraries)
     folder.mkdir(parents=True)
+    absent = {name: stand_in(name, libraries, folder) for name in ABSENT if name in libraries}
+    libraries.update(absent)
+    wanted = needed(binaries, libraries)
     copies = []
     for name in sorted(wanted):
         copy = folder / own_name(name)
@@ -96,14 +95,15 @@ def bundle(binaries: list[Path], folder: Path) -> list[Path]:
         for name in output("patchelf", "--print-needed", one).split():
             if name in wanted:
                 output("patchelf", "--replace-needed", name, own_name(name), one)
-            elif name in libraries or FREECADS.fullmatch(name):
+            elif FREECADS.fullmatch(name):
                 output("patchelf", "--remove-needed", name, one)
         rpath = "$ORIGIN" if one in copies else "$ORIGIN/" + folder.name
         output(
             "patchelf", "--set-rpath", rpath, one
         )  # alone: with others patchelf 0.14 leaves those out
         make_unique_symbols_plain(one)
-    curl.unlink()
+    for made in absent.values():
+        made.unlink()
     left = {
         name
         for one in [*binaries, *copies]
@@ -112,58 +112,56 @@ def bundle(binaries: list[Path], folder: Path) -> list[Path]:
     foreign = {one for one in left if not one.endswith(own_name("")) and not HOST.fullmatch(one)}
     if foreign:
         sys.exit(f"still needed by their own names: {', '.join(sorted(foreign))}")
-    return [libraries[name].resolve() for name in sorted(wanted) if name != CURL]
+    return [libraries[name].resolve() for name in sorted(wanted - set(absent))]
 
 
-def no_curl(folder: Path) -> Path:
-    """A library that stands for libcurl, which we never call."""
-    script, made = folder / "no_curl.map", folder / CURL
-    script.write_text("CURL_OPENSSL_4 { global: curl_*; local: *; };\n")
-    source = Path(__file__).with_name("no_curl.c")
-    options = ("-shared", "-fPIC", "-O2", f"-Wl,--version-script={script}", f"-Wl,-soname,{CURL}")
+def stand_in(name: str, libraries: dict[str, Path], folder: Path) -> Path:
+    """A library of that name whose functions, those that the others want, do nothing and return 0: no handle."""
+    own = {one.replace("@@", "@") for one in symbols(libraries[name], "--defined-only")}
+    others = [path for path in libraries.values() if path != libraries[name]]
+    wanted = {one for path in others for one in symbols(path, "--undefined-only")}
+    versions: dict[str, list[str]] = {}
+    for symbol in sorted(own & wanted):
+        function, version = symbol.split("@")
+        versions.setdefault(version, []).append(function)
+    source, script, made = folder / "absent.c", folder / "absent.map", folder / name
+    functions = [one for many in versions.values() for one in many]
+    source.write_text("".join(f"void* {one}(void) {{ return 0; }}\n" for one in functions))
+    script.write_text(
+        "".join(
+            f"{version} {{ global: {'; '.join(many)}; }};\n" for version, many in versions.items()
+        )
+    )
+    options = (
+        "-shared",
+        "-fPIC",
+        "-O2",
+        "-w",
+        "-fno-builtin",
+        f"-Wl,--version-script={script}",
+        f"-Wl,-soname,{name}",
+    )
     output("gcc", *options, source, "-o", made)
+    source.unlink()
     script.unlink()
     return made
 
 
+def symbols(path: Path, which: str) -> set[str]:
+    """Dynamic symbols as NAME@VERSION, or NAME@@VERSION where they are defined."""
+    return {line.split()[-1] for line in output("nm", "-D", which, path).splitlines()}
+
+
 def needed(binaries: list[Path], libraries: dict[str, Path]) -> set[str]:
-    """Names of the libraries that are reached, not by way of FreeCAD's; those that are named and not used stay out."""
-    within = {name: closure(path, libraries) for name, path in libraries.items()}
-    defined = {name: symbols(path, "--defined-only") for name, path in libraries.items()}
+    """Names of the libraries that are reached, not by way of FreeCAD's."""
     names: set[str] = set()
     rest = list(binaries)
     while rest:
-        binary = rest.pop()
-        wanted = symbols(binary, "--undefined-only")
-        for name in set(named(binary)) & set(libraries) - names:
-            if any(wanted & defined[one] for one in within[name]):
+        for name in output("patchelf", "--print-needed", rest.pop()).split():
+            if name in libraries and name not in names:
                 names.add(name)
                 rest.append(libraries[name])
     return names
-
-
-@functools.cache
-def named(binary: Path) -> list[str]:
-    """The libraries that it names itself."""
-    return output("patchelf", "--print-needed", binary).split()
-
-
-def closure(path: Path, libraries: dict[str, Path]) -> set[str]:
-    """Names of a library and of all that it names."""
-    names: set[str] = set()
-    rest = [path]
-    while rest:
-        one = rest.pop()
-        new = set(named(one)) & set(libraries) - names
-        names |= new
-        rest += [libraries[name] for name in new]
-    return names | {name for name, other in libraries.items() if other == path}
-
-
-def symbols(path: Path, which: str) -> set[str]:
-    """Dynamic symbols without their versions."""
-    lines = output("nm", "-D", which, path).splitlines()
-    return {line.split()[-1].split("@")[0] for line in lines}
 
 
 def make_unique_symbols_plain(path: Path) -> None:

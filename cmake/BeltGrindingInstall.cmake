@@ -1,6 +1,7 @@
 # `cmake --install` puts the workbench where FreeCAD finds it: the Mod folder of whoever configures.
-# Two more layouts are components, installed only by name: `addon`, the root of the release zip, and
-# `deb`, what the Debian package holds (BeltGrindingPackage.cmake).
+# Three more layouts are components, installed only by name: `addon`, the same in any folder; `portable`, which
+# tools/package gives the modules for several Pythons; `deb`, what the Debian package holds
+# (BeltGrindingPackage.cmake).
 if(NOT DEFINED CACHE{BELTGRINDING_MOD_DIR})
   set(mod_dir "${CMAKE_INSTALL_DATADIR}/freecad/Mod")
   find_program(FREECADCMD_PROGRAM NAMES freecadcmd FreeCADCmd)
@@ -51,7 +52,10 @@ install(FILES LICENSE DESTINATION ${BELTGRINDING_MOD_DIR})
 install(TARGETS ${modules} beltgrinding_cad_reader LIBRARY DESTINATION ${BELTGRINDING_MOD_DIR}
         RUNTIME DESTINATION ${BELTGRINDING_MOD_DIR})
 
-install_workbench(. COMPONENT addon EXCLUDE_FROM_ALL)
-install(FILES LICENSE DESTINATION . COMPONENT addon EXCLUDE_FROM_ALL)
-install(TARGETS ${modules} beltgrinding_cad_reader LIBRARY DESTINATION . COMPONENT addon EXCLUDE_FROM_ALL
-        RUNTIME DESTINATION . COMPONENT addon EXCLUDE_FROM_ALL)
+foreach(layout addon portable)
+  set(by_name COMPONENT ${layout} EXCLUDE_FROM_ALL)
+  install_workbench(. ${by_name})
+  install(FILES LICENSE DESTINATION . ${by_name})
+  install(TARGETS beltgrinding_cad_reader RUNTIME DESTINATION . ${by_name})
+endforeach()
+install(TARGETS ${modules} LIBRARY DESTINATION . COMPONENT addon EXCLUDE_FROM_ALL)

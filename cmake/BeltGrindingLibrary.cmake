@@ -62,13 +62,28 @@ if(BELTGRINDING_HAS_BREP)
   get_target_property(toolkits bg_brep BELTGRINDING_PACKAGES)
   beltgrinding_library(brep ROOMS brep PUBLIC beltgrinding::core PRIVATE ${toolkits})
 endif()
-if(BELTGRINDING_INSTALL AND TARGET beltgrinding_cad_reader)
-  install(PROGRAMS $<TARGET_FILE:beltgrinding_cad_reader> RENAME beltgrinding-cad-reader
-          DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/beltgrinding ${as_library})
-endif()
 if(BELTGRINDING_HAS_STOCK)
   beltgrinding_library(stock ROOMS meshio rays stock thickness
     PUBLIC beltgrinding::core PRIVATE embree)
+endif()
+# What reads foreign files finds the program for it, here or installed in any prefix.
+if(TARGET beltgrinding_cad_reader)
+  set(reader ${CMAKE_INSTALL_LIBEXECDIR}/beltgrinding/beltgrinding-cad-reader)
+  foreach(part brep stock)
+    if(TARGET bg_library_${part})
+      target_sources(bg_library_${part} INTERFACE
+        $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/cmake/installed_reader.cpp>
+        $<INSTALL_INTERFACE:$<INSTALL_PREFIX>/${library_cmake}/installed_reader.cpp>)
+      target_compile_definitions(bg_library_${part} INTERFACE
+        $<BUILD_INTERFACE:BELTGRINDING_INSTALLED_READER="$<TARGET_FILE:beltgrinding_cad_reader>">
+        $<INSTALL_INTERFACE:BELTGRINDING_INSTALLED_READER="$<INSTALL_PREFIX>/${reader}">)
+    endif()
+  endforeach()
+  if(BELTGRINDING_INSTALL)
+    install(PROGRAMS $<TARGET_FILE:beltgrinding_cad_reader> RENAME beltgrinding-cad-reader
+            DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/beltgrinding ${as_library})
+    install(FILES cmake/installed_reader.cpp DESTINATION ${library_cmake} ${as_library})
+  endif()
 endif()
 if(BELTGRINDING_HAS_SCAN)
   get_target_property(packages bg_scan BELTGRINDING_PACKAGES)

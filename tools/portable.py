@@ -1,6 +1,6 @@
 """Called by `tools/package portable`: portable.py STAGE BUILT OUT.
 
-STAGE is the workbench as the component `addon` installs it; BUILT/modules has the modules for each Python. Their
+STAGE is the workbench as the component `portable` installs it; BUILT/modules has the modules for each Python. Their
 libraries are laid beside them under names of their own, so that those of a FreeCAD in the same process, of other
 versions perhaps, are neither used nor replaced. Writes the zip and the wheels into OUT.
 """
@@ -23,7 +23,8 @@ READER = "beltgrinding-cad-reader"
 HOST = re.compile(r"(ld-linux.*|lib(c|m|dl|rt|pthread|util|resolv|gcc_s|stdc\+\+|python3.*))\.so.*")
 # FreeCAD's own, in the process already: a second Coin could not draw into its scene.
 FREECADS = re.compile(r"lib(Coin|GL|GLX|OpenGL|GLU|EGL|X11|Xext|Xi)\.so.*")
-CURL = "libcurl.so.4"
+# Never called: HDF5 would read from the net by them, lib3mf's libzip encrypted files. They bring fourteen megabytes.
+ABSENT = ("libcurl.so.4", "libcrypto.so.3")
 PURE = ("jsonschema", "attr", "attrs", "pyrsistent", "_pyrsistent_version.py")
 THREE = Path("/usr/share/javascript/three/three.min.js")
 MOST_MB = 60
@@ -78,11 +79,10 @@ def bundle(binaries: list[Path], folder: Path) -> list[Path]:
         for name, path in paths_of_libraries(binaries).items()
         if not HOST.fullmatch(name) and not FREECADS.fullmatch(name)
     }
-    curl = no_curl(folder.parent)
-    if CURL in libraries:
-        libraries[CURL] = curl
-    wanted = needed(binaries, libraries)
     folder.mkdir(parents=True)
+    absent = {name: stand_in(name, libraries, folder) for name in ABSENT if name in libraries}
+    libraries.update(absent)
+    wanted = needed(binaries, libraries)
     copies = []
     for name in sorted(wanted):
         copy = folder / own_name(name)
@@ -102,7 +102,8 @@ def bundle(binaries: list[Path], folder: Path) -> list[Path]:
             "patchelf", "--set-rpath", rpath, one
         )  # alone: with others patchelf 0.14 leaves those out
         make_unique_symbols_plain(one)
-    curl.unlink()
+    for made in absent.values():
+        made.unlink()
     left = {
         name
         for one in [*binaries, *copies]
@@ -111,18 +112,44 @@ def bundle(binaries: list[Path], folder: Path) -> list[Path]:
     foreign = {one for one in left if not one.endswith(own_name("")) and not HOST.fullmatch(one)}
     if foreign:
         sys.exit(f"still needed by their own names: {', '.join(sorted(foreign))}")
-    return [libraries[name].resolve() for name in sorted(wanted) if name != CURL]
+    return [libraries[name].resolve() for name in sorted(wanted - set(absent))]
 
 
-def no_curl(folder: Path) -> Path:
-    """A library that stands for libcurl, which we never call."""
-    script, made = folder / "no_curl.map", folder / CURL
-    script.write_text("CURL_OPENSSL_4 { global: curl_*; local: *; };\n")
-    source = Path(__file__).with_name("no_curl.c")
-    options = ("-shared", "-fPIC", "-O2", f"-Wl,--version-script={script}", f"-Wl,-soname,{CURL}")
+def stand_in(name: str, libraries: dict[str, Path], folder: Path) -> Path:
+    """A library of that name whose functions, those that the others want, do nothing and return 0: no handle."""
+    own = {one.replace("@@", "@") for one in symbols(libraries[name], "--defined-only")}
+    others = [path for path in libraries.values() if path != libraries[name]]
+    wanted = {one for path in others for one in symbols(path, "--undefined-only")}
+    versions: dict[str, list[str]] = {}
+    for symbol in sorted(own & wanted):
+        function, version = symbol.split("@")
+        versions.setdefault(version, []).append(function)
+    source, script, made = folder / "absent.c", folder / "absent.map", folder / name
+    functions = [one for many in versions.values() for one in many]
+    source.write_text("".join(f"void* {one}(void) {{ return 0; }}\n" for one in functions))
+    script.write_text(
+        "".join(
+            f"{version} {{ global: {'; '.join(many)}; }};\n" for version, many in versions.items()
+        )
+    )
+    options = (
+        "-shared",
+        "-fPIC",
+        "-O2",
+        "-w",
+        "-fno-builtin",
+        f"-Wl,--version-script={script}",
+        f"-Wl,-soname,{name}",
+    )
     output("gcc", *options, source, "-o", made)
+    source.unlink()
     script.unlink()
     return made
+
+
+def symbols(path: Path, which: str) -> set[str]:
+    """Dynamic symbols as NAME@VERSION, or NAME@@VERSION where they are defined."""
+    return {line.split()[-1] for line in output("nm", "-D", which, path).splitlines()}
 
 
 def needed(binaries: list[Path], libraries: dict[str, Path]) -> set[str]:
@@ -167,10 +194,15 @@ def newest_needed(binaries: list[Path], prefix: str) -> str:
 
 
 def licences(origins: list[Path], folder: Path) -> None:
-    """Copies what Debian says of the copyright of each package from which a file comes."""
+    """Copies what Debian says of the copyright of each package from which a file comes; the same text once."""
     folder.mkdir(parents=True, exist_ok=True)
+    first: dict[bytes, str] = {}
     for package in sorted({owner(path) for path in origins}):
-        shutil.copyfile(f"/usr/share/doc/{package}/copyright", folder / f"{package}.txt")
+        text = Path(f"/usr/share/doc/{package}/copyright").read_bytes()
+        same = first.setdefault(text, package)
+        if same != package:
+            text = f"The same as {same}.txt\n".encode()
+        (folder / f"{package}.txt").write_bytes(text)
 
 
 def owner(path: Path) -> str:
@@ -204,8 +236,8 @@ def stage_portable(stage: Path, built: Path) -> tuple[list[Path], list[str]]:
     modules = sorted((built / "modules").glob("*.so"))
     reader = next(stage.glob(f"{READER}*"))
     reader.rename(stage / READER)
-    for old in [*stage.glob("*.so"), *stage.glob("*.so.json")]:
-        old.unlink()
+    for one in stage.glob("*.so.json"):  # of the module for this Python
+        one.unlink()
     for module in modules:
         shutil.copy(module, stage)
     binaries = [stage / one.name for one in modules] + [stage / READER]

@@ -42,6 +42,12 @@ constexpr double kMostSeconds = 1e9;
 std::mutex g_mutex;
 std::string g_program;  // as set_reader has it
 
+/// As set_installed_reader has it, perhaps before this file's own variables are made.
+std::string& installed_program() {
+    static std::string program;
+    return program;
+}
+
 /// Where this code lies: the Python module, a library, or the program itself.
 fs::path own_object() {
     Dl_info info{};
@@ -50,12 +56,13 @@ fs::path own_object() {
     return info.dli_fname;
 }
 
-/// Beside the object that this code is in, where its links lead (the Debian package links its
-/// modules from FreeCAD's folder), in libexec of the same prefix, and where the library was
-/// installed. Beside a module `core.TAG.so` a reader `kProgram.TAG` comes first: builds for several
-/// systems lie side by side.
+/// Of the library that the program was linked with; beside the object that this code is in, where
+/// its links lead (the Debian package links its modules from FreeCAD's folder), and in libexec of
+/// the same prefix. Beside a module `core.TAG.so` a reader `kProgram.TAG` comes first: builds for
+/// several systems lie side by side.
 std::vector<fs::path> places() {
     std::vector<fs::path> found;
+    if (!installed_program().empty()) found.push_back(installed_program());
     const fs::path object = own_object();
     std::error_code error;
     const std::string file = object.filename().string();
@@ -69,9 +76,6 @@ std::vector<fs::path> places() {
         for (const fs::path& prefix : {folder.parent_path(), folder.parent_path().parent_path()})
             found.push_back(prefix / "libexec" / "beltgrinding" / kProgram);
     }
-#ifdef BELTGRINDING_LIBEXEC
-    found.push_back(fs::path(BELTGRINDING_LIBEXEC) / kProgram);
-#endif
     return found;
 }
 
@@ -189,6 +193,10 @@ std::string body_of(ChildAnswer answer, const std::string& program, double most)
 void set_reader(const std::string& program) {
     const std::lock_guard<std::mutex> lock(g_mutex);
     g_program = program;
+}
+
+void set_installed_reader(const char* program) {
+    installed_program() = program;
 }
 
 bool is_without_reader(const InputError& error) {

@@ -12,6 +12,9 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 BUILD = Path(os.environ.get("BELTGRINDING_BUILD", ROOT / "build" / "release"))
 EXAMPLE = ROOT / "examples" / "plate.cpp"
+PRESS = ROOT / "examples" / "press.cpp"
+PART = ROOT / "examples" / "part.cpp"
+PAGE = (ROOT / "docs" / "library.md").read_text("utf-8")
 
 
 def run(*command, **keys):
@@ -57,18 +60,26 @@ def check_depth(printed):
 FIND = """cmake_minimum_required(VERSION 3.22)
 project(grind LANGUAGES CXX)
 find_package(BeltGrinding {version} REQUIRED COMPONENTS core)
-add_executable(plate plate.cpp)
-target_link_libraries(plate PRIVATE beltgrinding::core)
+foreach(example plate press)
+  add_executable(${{example}} ${{example}}.cpp)
+  target_link_libraries(${{example}} PRIVATE beltgrinding::core)
+endforeach()
 """
 
 
+def test_the_page_opens_with_the_smallest_example():
+    block = "".join(f"    {line}\n" if line else "\n" for line in PRESS.read_text().splitlines())
+    assert PAGE.split("\n", 2)[2].startswith(block)
+
+
 def test_the_example_by_find_package(prefix, tmp_path):
-    folder = project(tmp_path / "user", FIND.format(version=""), EXAMPLE)
+    folder = project(tmp_path / "user", FIND.format(version=""), EXAMPLE, PRESS)
     configure(folder, f"-DCMAKE_PREFIX_PATH={prefix}", "-DCMAKE_BUILD_TYPE=Release")
     run("cmake", "--build", folder / "build")
     printed = run(folder / "build" / "plate", cwd=tmp_path)
     check_depth(printed)
-    assert printed.strip() in (ROOT / "docs" / "library.md").read_text()
+    assert f"    {printed}" in PAGE
+    assert f"    {run(folder / 'build' / 'press', cwd=tmp_path)}" in PAGE
 
 
 def test_the_example_by_pkg_config(prefix, tmp_path):
@@ -86,20 +97,60 @@ def test_a_moved_prefix_is_still_found(prefix, tmp_path):
         if path.suffix in (".cmake", ".pc"):
             assert str(prefix) not in path.read_text() and str(ROOT) not in path.read_text(), path
     configure(
-        project(tmp_path / "user", FIND.format(version=""), EXAMPLE), f"-DCMAKE_PREFIX_PATH={moved}"
+        project(tmp_path / "user", FIND.format(version=""), EXAMPLE, PRESS),
+        f"-DCMAKE_PREFIX_PATH={moved}",
     )
+
+
+READS = """cmake_minimum_required(VERSION 3.22)
+project(reads LANGUAGES CXX)
+find_package(BeltGrinding REQUIRED COMPONENTS core brep stock)
+add_executable(part part.cpp)
+target_link_libraries(part PRIVATE beltgrinding::brep beltgrinding::stock)
+add_executable(mesh mesh.cpp)
+target_link_libraries(mesh PRIVATE beltgrinding::stock)
+"""
+MESH = """#include <beltgrinding/mesh_reader.h>
+#include <cstdio>
+int main(int, char** words) {
+    std::printf("%zu triangles\\n", beltgrinding::read_mesh(words[1]).triangles.size());
+}
+"""
+FACET = "facet normal 0 0 0 outer loop vertex {} vertex {} vertex {} endloop endfacet\n"
+CORNERS = "0 0 0", "10 0 0", "0 10 0", "0 0 10"
+
+
+def test_a_static_library_finds_its_reader_in_any_prefix(prefix, tmp_path):
+    moved = tmp_path / "a prefix"
+    shutil.copytree(prefix, moved)
+    folder = project(tmp_path / "user", READS, PART)
+    (folder / "mesh.cpp").write_text(MESH)
+    corners = [
+        [CORNERS[k] for k in three] for three in ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))
+    ]
+    facets = "".join(FACET.format(*three) for three in corners)
+    (tmp_path / "solid.stl").write_text(f"solid s\n{facets}endsolid s\n")
+    configure(folder, f"-DCMAKE_PREFIX_PATH={moved}", "-DCMAKE_BUILD_TYPE=Release")
+    run("cmake", "--build", folder / "build")
+    assert run(folder / "build" / "mesh", tmp_path / "solid.stl", env={}) == "4 triangles\n"
+    printed = run(folder / "build" / "part", tmp_path / "solid.stl", "1", env={})
+    assert re.fullmatch(r"face 1 of 4: .*\n.*\n", printed), printed
+    unread = tmp_path / "damaged.step"
+    unread.write_text("ISO-10303-21;")
+    with pytest.raises(AssertionError, match="damaged.step"):
+        run(folder / "build" / "part", unread, "1", env={})
 
 
 @pytest.mark.parametrize("version, fits", [("0.0.1", False), ("99.0", False)])
 def test_another_version_is_refused(prefix, tmp_path, version, fits):
-    folder = project(tmp_path / "user", FIND.format(version=version), EXAMPLE)
+    folder = project(tmp_path / "user", FIND.format(version=version), EXAMPLE, PRESS)
     with pytest.raises(AssertionError, match="compatible with requested version"):
         configure(folder, f"-DCMAKE_PREFIX_PATH={prefix}")
 
 
 def test_an_unknown_part_is_refused(prefix, tmp_path):
     text = FIND.format(version="").replace("COMPONENTS core", "COMPONENTS core polishing")
-    folder = project(tmp_path / "user", text, EXAMPLE)
+    folder = project(tmp_path / "user", text, EXAMPLE, PRESS)
     with pytest.raises(AssertionError, match="polishing"):
         configure(folder, f"-DCMAKE_PREFIX_PATH={prefix}")
 

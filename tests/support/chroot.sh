@@ -34,7 +34,8 @@ chroot_make() {
     touch "$place/.complete"
 }
 
-# chroot_enter PLACE: mounts what programs expect; chroot_leave PLACE takes it back.
+# chroot_enter PLACE: mounts what programs expect, and beside the place the packages that apt has fetched, which all
+# systems there share; chroot_leave PLACE takes it back.
 chroot_enter() {
     local place=$1
     chroot_leave "$place"
@@ -43,12 +44,16 @@ chroot_enter() {
     mount --make-private "$place/dev"
     mount --bind /dev/shm "$place/dev/shm" # FreeCAD's start page needs it, for users other than root
     mount --bind /dev/pts "$place/dev/pts"
+    local packages
+    packages=$(dirname "$place")/archives
+    mkdir -p "$packages/partial" "$place/var/cache/apt/archives"
+    mount --bind "$packages" "$place/var/cache/apt/archives"
     cp -f /etc/resolv.conf "$place/etc/resolv.conf"
 }
 
 chroot_leave() {
     local place=$1 path
-    for path in work/shared dev/shm dev/pts dev proc; do
+    for path in var/cache/apt/archives work/shared dev/shm dev/pts dev proc; do
         ! mountpoint -q "$place/$path" || umount "$place/$path" 2>/dev/null || umount -l "$place/$path"
     done
 }

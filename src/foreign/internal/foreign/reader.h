@@ -44,6 +44,10 @@ bool is_without_reader(const InputError& error);
 /// As `set_cad_reader` (beltgrinding/shape.h).
 void set_reader(const std::string& program);
 
+/// Where the reader of this library lies, looked for after those that a person names:
+/// cmake/installed_reader.cpp, in each program that links it, says so.
+void set_installed_reader(const char* program);
+
 /// Throws the InputError for a fault in reading a file of `format` ("STEP") by `library`, which is
 /// named where the library failed.
 [[noreturn]] void refuse_file(const ReaderFault& fault, const std::string& format,

@@ -303,6 +303,9 @@ class JobPanel(Panel):
             first["notes"], self.kind = [error], self._kind()
             return
         first_settings.apply(self.obj, found, first)
+        for path in job_data.children(self.obj, RasterPath):
+            if proposed(path):
+                path.recompute()  # they are drawn as they will be
         # What they bring is not known before the passes are laid.
         self.first = self.obj.Proxy.proposed = {**first, **found, "in_tolerance": None}
         self.chosen, self.kind = self._numbers(), self._kind()

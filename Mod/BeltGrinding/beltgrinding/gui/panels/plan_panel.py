@@ -72,6 +72,7 @@ class PlanPanel(RunPanel):
         body.addWidget(self.keep)
         body.addStretch()
         slim(self.form)
+        obj.ViewObject.Visibility = True
         self._open()
         self._enable()
         self.show(None)
@@ -345,6 +346,7 @@ class PlanPanel(RunPanel):
 
     def reject(self) -> bool:
         self._commit()
+        self.obj.ViewObject.Visibility = False  # the colours of its reasons go with their words
         self.document.recompute()
         return super().reject()
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from ...calibration import learning
 from ...engine import InputError
-from ...objects import deviation, ground_mesh, part_scan, preferences, simulation
+from ...objects import deviation, ground_mesh, part_scan, preferences, shown, simulation
 from ...objects.job_data import child, children
 from ...objects.kinds import DocumentObject
 from ...scan import comparison as scan, start as scan_start
@@ -195,12 +195,12 @@ class ScanPanel(Panel):
             return
         result, figures = found
         part_scan.store(self.obj, result, figures)
-        shown = child(self.job, deviation.Deviation)
-        if shown is not None:
-            shown.ColourBy = deviation.DIFFERENCE
+        compared = child(self.job, deviation.Deviation)
+        if compared is not None:
+            compared.ColourBy = shown.DIFFERENCE
             for mesh in children(self.job, ground_mesh.GroundMesh):
                 mesh.ViewObject.Visibility = False  # its surface is the same
-            shown.ViewObject.Visibility = True
+            compared.ViewObject.Visibility = True
         self.obj.touch()
         self.document.recompute()
         self.show(figures)

@@ -25,6 +25,7 @@ from ..common.save_dialog import file_to_write
 from ..common.transaction import transaction
 from ..panels.study_panel import StudyPanel
 from ..widgets.picture_label import PictureLabel
+from ..widgets.steady import steady
 from .object_dock import ObjectDock
 from .study_cells import NUMBER, cell
 
@@ -96,7 +97,7 @@ class StudyDock(ObjectDock):
     def _charts(self) -> Widget:
         side, layout = QtGui.QWidget(), QtGui.QVBoxLayout()
         side.setLayout(layout)
-        self.kind, self.figure = QtGui.QComboBox(), QtGui.QComboBox()
+        self.kind, self.figure = steady(QtGui.QComboBox()), steady(QtGui.QComboBox())
         self.kind.setObjectName("studyChart")
         self.figure.setObjectName("studyFigure")
         for key, text in (

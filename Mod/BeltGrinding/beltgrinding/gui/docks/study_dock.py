@@ -23,6 +23,7 @@ from ..common.messages import error_text, inform, tell
 from ..common.report_language import language, words
 from ..common.save_dialog import file_to_write
 from ..common.transaction import transaction
+from ..common.task_panel import show_panel
 from ..panels.study_panel import StudyPanel
 from ..widgets.picture_label import PictureLabel
 from ..widgets.steady import steady
@@ -391,4 +392,4 @@ def _best(found: Json | None) -> list[str]:
 def show(obj: DocumentObject) -> None:
     """Opens the panel of a Study object; its table comes in the dock."""
     if obj.getParentGroup() is not None and not Gui.Control.activeDialog():
-        Gui.Control.showDialog(StudyPanel(obj, StudyDock.open))
+        show_panel(StudyPanel(obj, StudyDock.open), obj)

@@ -7,6 +7,7 @@ from typing import Any
 
 from ...inspection import finish_zones
 from ..common.compat import QtGui, translate
+from ..common.figures import figure
 from ..common.kinds import Colour, FaceName, Json, Table
 from ..common.messages import note_texts
 from ..common.theme import theme
@@ -136,7 +137,10 @@ def _regions(found: Json, face_name: FaceName) -> list[Any]:
         rows += _finish(name, zone.get("finish") or {})
     for face in found["faces"]:
         wave = face["waviness"]
-        told = [f"{wave[name]['Wt_mm']:.4f}" if wave[name] else "–" for name in ("along", "across")]
+        told = [
+            figure(wave[name]["Wt_mm"], ".4f") if wave[name] else "–"
+            for name in ("along", "across")
+        ]
         texts = [face_name(face["face"]), word(face["verdict"]), *_figures(face)]
         rows.append((face, [*texts, " / ".join(told)], _colour(face["verdict"])))
     return rows
@@ -158,7 +162,7 @@ def _finish(name: str, finish: Json) -> list[Any]:
         texts = [
             titles[what],
             word(one["verdict"]),
-            f"{100 * max(good, 0.0):.2f}",
+            figure(100 * max(good, 0.0), ".2f"),
             "",
             "",
             "",
@@ -166,8 +170,8 @@ def _finish(name: str, finish: Json) -> list[Any]:
             "",
         ]
         if what == "Ra" and worst is not None:
-            texts[5] = f"{worst['Ra_um']:.2f} µm"
-            texts[6] = f"{worst['Ra_um'] - one['limit_um']:+.2f} µm"
+            texts[5] = f"{figure(worst['Ra_um'], '.2f')} µm"
+            texts[6] = f"{figure(worst['Ra_um'] - one['limit_um'], '+.2f')} µm"
         place = worst or (one.get("unknown") or {}).get("place")
         rows.append(({"worst": place}, texts, _colour(one["verdict"])))
     return rows
@@ -177,16 +181,22 @@ def _figures(region: Json) -> list[str]:
     if region["worst"] is None:
         return [""] * 5
     worst = region["worst"]
-    shares = [f"{100 * region[f'{name}_share']:.2f}" for name in ("in", "above", "below")]
-    return [*shares, f"{worst['value_mm']:+.3f}", f"{worst['beyond_mm']:+.3f}"]
+    shares = [
+        f"{figure(100 * region[f'{name}_share'], '.2f')}" for name in ("in", "above", "below")
+    ]
+    return [
+        *shares,
+        figure(worst["value_mm"], "+.3f"),
+        figure(worst["beyond_mm"], "+.3f"),
+    ]
 
 
 def _thickness(thick: Json) -> list[str]:
     if thick["worst"] is None:
         return [word(thick["verdict"]), *[""] * 6]
     worst = thick["worst"]
-    share = f"{100 * (1 - thick['out_share']):.2f}"
-    value, beyond = f"{worst['value_mm']:+.3f}", f"{worst['beyond_mm']:+.3f}"
+    share = figure(100 * (1 - thick["out_share"]), ".2f")
+    value, beyond = figure(worst["value_mm"], "+.3f"), figure(worst["beyond_mm"], "+.3f")
     return [word(thick["verdict"]), share, "", "", value, beyond, ""]
 
 
@@ -221,9 +231,9 @@ def _clusters(found: Json, face_name: FaceName) -> list[Any]:
                 [
                     str(cluster["number"]),
                     sides[cluster["side"]],
-                    f"{cluster['area_mm2']:.2f}",
-                    f"{cluster['worst']['value_mm']:+.3f}",
-                    f"{cluster['extent_mm']:.1f} × {cluster['width_mm']:.1f}",
+                    figure(cluster["area_mm2"], ".2f"),
+                    figure(cluster["worst"]["value_mm"], "+.3f"),
+                    f"{figure(cluster['extent_mm'], '.1f')} × {figure(cluster['width_mm'], '.1f')}",
                     line,
                     ", ".join(face_name(face) for face in cluster["faces"]),
                 ],
@@ -251,10 +261,10 @@ def _motions(cluster: Json, programs: Sequence[str]) -> list[Any]:
         rows.append(
             (
                 [
-                    f"{100 * motion['share']:.1f}",
+                    figure(100 * motion["share"], ".1f"),
                     str(motion["line"] or ""),
                     str(motion["pose"] + 1) if known else "",
-                    f"{motion['depth_mm']:.3f}",
+                    figure(motion["depth_mm"], ".3f"),
                     programs[motion["program"]]["name"] if known else "",
                 ],
                 None,

@@ -15,6 +15,7 @@ from ...engine import Cancelled, InputError
 from ...objects import job_data, job_inputs, properties
 from ...objects.kinds import DocumentObject
 from ..common.compat import QtCore, QtGui, buttons, translate
+from ..common.figures import figure
 from ..common.icons import qicon
 from ..common.kinds import Buttons, Context, Json, Layout, Table, Widget
 from ..common.messages import error_text
@@ -277,12 +278,12 @@ class CalibrationPanel:
             name = one["name"].replace("_", "\n", 1).replace("_", " ")
             interval = translate("BeltGrinding", "fixed")
             if one["free"]:
-                low, high = (f"{one[side]:.3g}" for side in ("low", "high"))
+                low, high = (figure(one[side], ".3g") for side in ("low", "high"))
                 between = "\n... " if len(low + high) > LONG else " ... "
                 interval = low + between + high
             texts = (
                 f"{name}\n{one['unit'].replace('mm2', 'mm²')}".strip(),
-                f"{one['value']:.4g}\n({interval})",
+                f"{figure(one['value'], '.4g')}\n({interval})",
             )
             for column, text in enumerate(texts):
                 self.table.setItem(row, column, QtGui.QTableWidgetItem(text))

@@ -14,6 +14,7 @@ from pivy import coin
 from ...engine import core
 from ...objects import preferences, shown
 from ..common.compat import translate
+from ..common.figures import figure
 from ..common.kinds import Array
 from ..common.theme import theme
 from . import legend_picture
@@ -124,7 +125,7 @@ def _deviation(
     values = [-limit + 2 * limit * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)]
     unit = preferences.deviation_unit()
     labels = {
-        _height(value, limit): f"{value / unit.size:+.{unit.decimals}f}"
+        _height(value, limit): figure(value / unit.size, f"+.{unit.decimals}f")
         for value in label_values(lower, upper, limit, bands)
     }
     colours = core.colour_scale(lower, upper, limit, values, bands, choice)
@@ -181,7 +182,7 @@ def uncertainty(limit: float, out_of_date: bool = False) -> Spec:
         limit, [limit * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)]
     )
     unit = preferences.deviation_unit()
-    labels = {k / 4: f"{limit * k / 4 / unit.size:.3g}" for k in range(5)}
+    labels = {k / 4: figure(limit * k / 4 / unit.size, ".3g") for k in range(5)}
     text = translate("BeltGrinding", "uncertainty, {}").format(unit.symbol)
     return Spec(colours.tolist(), labels, text, ("", ""), (False, True), _warning(out_of_date))
 
@@ -189,7 +190,7 @@ def uncertainty(limit: float, out_of_date: bool = False) -> Spec:
 def temperature(start: float, span: float, out_of_date: bool = False) -> Spec:
     """The ``Spec`` of the greatest temperature, from ``start`` degrees C to ``span`` K above."""
     colours = core.uncertainty_scale(span, [span * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)])
-    labels = {k / 4: f"{start + span * k / 4:.0f}" for k in range(5)}
+    labels = {k / 4: figure(start + span * k / 4, ".0f") for k in range(5)}
     text = translate("BeltGrinding", "greatest temperature, °C")
     return Spec(colours.tolist(), labels, text, ("", ""), (False, False), _warning(out_of_date))
 
@@ -197,7 +198,7 @@ def temperature(start: float, span: float, out_of_date: bool = False) -> Spec:
 def roughness(span: float, out_of_date: bool = False) -> Spec:
     """The ``Spec`` of Ra, up to ``span`` µm."""
     colours = core.uncertainty_scale(span, [span * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)])
-    labels = {k / 4: f"{span * k / 4:.2g}" for k in range(5)}
+    labels = {k / 4: figure(span * k / 4, ".2g") for k in range(5)}
     text = translate("BeltGrinding", "roughness Ra, µm")
     return Spec(colours.tolist(), labels, text, ("", ""), (False, False), _warning(out_of_date))
 

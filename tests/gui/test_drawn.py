@@ -14,7 +14,7 @@ import beltgrinding
 from beltgrinding.gui.preferences_page import PreferencesPage, take_effect
 from beltgrinding.objects import preferences
 from support import synthetic_finish
-from support.hands import menu, prepare, press, settle, type_in
+from support.hands import field, menu, prepare, press, settle, type_in
 
 pytestmark = pytest.mark.freecad(window=True)
 
@@ -284,3 +284,23 @@ def test_opening_changes_nothing():
     doc = FreeCAD.openDocument(str(Path("opened.FCStd").absolute()))
     settle()
     assert not Gui.getDocument(doc.Name).Modified
+
+
+def test_the_verdicts_tables_follow_the_unit_of_deviations():
+    job, _, _ = worked()
+    verdict = beltgrinding.make_verdict(job)
+    verdict.ViewObject.Proxy.doubleClicked(verdict.ViewObject)
+    settle()
+    table = field("regions")
+
+    def worst():
+        titles = [table.horizontalHeaderItem(k).text() for k in range(table.columnCount())]
+        column = [k for k, title in enumerate(titles) if title.startswith("Worst")][0]
+        return titles[column], float(table.item(0, column).text())
+
+    unit, value = worst()
+    assert unit == "Worst, mm"
+    preferences.parameters().SetString("DeviationUnit", "µm")
+    take_effect()
+    settle()
+    assert worst() == ("Worst, µm", round(1000 * value))

@@ -173,7 +173,7 @@ def take_effect() -> None:
     preferences.apply_threads()
     drawing.ask_all()
     for dock in Gui.getMainWindow().findChildren(QtGui.QDockWidget):
-        if dock.objectName() in ("BeltGrinding_SectionDock", "BeltGrinding_PlaybackDock"):
+        if hasattr(dock, "preferences_changed"):
             dock.preferences_changed()
     for document in FreeCAD.listDocuments().values():
         for obj in document.Objects:

@@ -30,8 +30,13 @@ def figure(value: Any, spec: str = "") -> str:
 
 def length_text(value: float, more: int = 0, sign: str = "+") -> str:
     """A deviation in mm as a number with its unit; ``more``: decimals beyond the usual."""
+    return f"{length_number(value, more, sign)} {preferences.deviation_unit().symbol}"
+
+
+def length_number(value: float, more: int = 0, sign: str = "+") -> str:
+    """The same without its unit, which the head of its column has."""
     unit = preferences.deviation_unit()
-    return f"{figure(value / unit.size, f'{sign}.{unit.decimals + more}f')} {unit.symbol}"
+    return figure(value / unit.size, f"{sign}.{unit.decimals + more}f")
 
 
 class _Filler(string.Formatter):

@@ -6,8 +6,9 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from ...inspection import finish_zones
+from ...objects.preferences import deviation_unit
 from ..common.compat import QtGui, translate
-from ..common.figures import figure
+from ..common.figures import figure, length_number
 from ..common.kinds import Colour, FaceName, Json, Table
 from ..common.messages import note_texts
 from ..common.theme import theme
@@ -99,6 +100,11 @@ class _Rows:
         return self.make(*arguments)
 
 
+def _in_unit(title: str) -> str:
+    """A column's title with the unit that deviations are told in."""
+    return title.format(deviation_unit().symbol)
+
+
 def _region_titles() -> list[str]:
     return [
         translate("BeltGrinding", "Where"),
@@ -106,9 +112,9 @@ def _region_titles() -> list[str]:
         translate("BeltGrinding", "In, %"),
         translate("BeltGrinding", "Left, %"),
         translate("BeltGrinding", "Deep, %"),
-        translate("BeltGrinding", "Worst, mm"),
-        translate("BeltGrinding", "Beyond, mm"),
-        translate("BeltGrinding", "Waves Wt, mm"),
+        _in_unit(translate("BeltGrinding", "Worst, {}")),
+        _in_unit(translate("BeltGrinding", "Beyond, {}")),
+        _in_unit(translate("BeltGrinding", "Waves Wt, {}")),
     ]
 
 
@@ -138,7 +144,7 @@ def _regions(found: Json, face_name: FaceName) -> list[Any]:
     for face in found["faces"]:
         wave = face["waviness"]
         told = [
-            figure(wave[name]["Wt_mm"], ".4f") if wave[name] else "–"
+            length_number(wave[name]["Wt_mm"], 1, "") if wave[name] else "–"
             for name in ("along", "across")
         ]
         texts = [face_name(face["face"]), word(face["verdict"]), *_figures(face)]
@@ -186,8 +192,8 @@ def _figures(region: Json) -> list[str]:
     ]
     return [
         *shares,
-        figure(worst["value_mm"], "+.3f"),
-        figure(worst["beyond_mm"], "+.3f"),
+        length_number(worst["value_mm"]),
+        length_number(worst["beyond_mm"]),
     ]
 
 
@@ -196,7 +202,7 @@ def _thickness(thick: Json) -> list[str]:
         return [word(thick["verdict"]), *[""] * 6]
     worst = thick["worst"]
     share = figure(100 * (1 - thick["out_share"]), ".2f")
-    value, beyond = figure(worst["value_mm"], "+.3f"), figure(worst["beyond_mm"], "+.3f")
+    value, beyond = length_number(worst["value_mm"]), length_number(worst["beyond_mm"])
     return [word(thick["verdict"]), share, "", "", value, beyond, ""]
 
 
@@ -205,7 +211,7 @@ def _cluster_titles() -> list[str]:
         "",
         translate("BeltGrinding", "What"),
         translate("BeltGrinding", "Area, mm²"),
-        translate("BeltGrinding", "Worst, mm"),
+        _in_unit(translate("BeltGrinding", "Worst, {}")),
         translate("BeltGrinding", "Size, mm"),
         translate("BeltGrinding", "Line"),
         translate("BeltGrinding", "Faces"),
@@ -232,7 +238,7 @@ def _clusters(found: Json, face_name: FaceName) -> list[Any]:
                     str(cluster["number"]),
                     sides[cluster["side"]],
                     figure(cluster["area_mm2"], ".2f"),
-                    figure(cluster["worst"]["value_mm"], "+.3f"),
+                    length_number(cluster["worst"]["value_mm"]),
                     f"{figure(cluster['extent_mm'], '.1f')} × {figure(cluster['width_mm'], '.1f')}",
                     line,
                     ", ".join(face_name(face) for face in cluster["faces"]),
@@ -248,7 +254,7 @@ def _motion_titles() -> list[str]:
         translate("BeltGrinding", "Share, %"),
         translate("BeltGrinding", "Line"),
         translate("BeltGrinding", "Pose"),
-        translate("BeltGrinding", "Depth, mm"),
+        _in_unit(translate("BeltGrinding", "Depth, {}")),
         translate("BeltGrinding", "Program"),
     ]
 
@@ -264,7 +270,7 @@ def _motions(cluster: Json, programs: Sequence[str]) -> list[Any]:
                     figure(100 * motion["share"], ".1f"),
                     str(motion["line"] or ""),
                     str(motion["pose"] + 1) if known else "",
-                    figure(motion["depth_mm"], ".3f"),
+                    length_number(motion["depth_mm"], 0, ""),
                     programs[motion["program"]]["name"] if known else "",
                 ],
                 None,

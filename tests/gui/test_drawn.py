@@ -304,3 +304,21 @@ def test_the_verdicts_tables_follow_the_unit_of_deviations():
     take_effect()
     settle()
     assert worst() == ("Worst, µm", round(1000 * value))
+
+
+@pytest.mark.slow
+def test_a_plans_reasons_have_their_legend_and_go_with_its_panel():
+    job, doc, deviation = worked()
+    first = picture()
+    plan = beltgrinding.make_plan(job, Rounds=1, Check=False)
+    settle()
+    assert plan.LeftStates
+    # One legend, of the reasons: their colours lie over one tone.
+    (legend,) = plan.ViewObject.Proxy.legends()
+    assert legend.spec.name == "Plan" and len(legend.spec.marks) > 1
+    assert not deviation.ViewObject.Proxy.legends() and not same(picture(), first)
+    menu("Plan feeds...")
+    press("Close")
+    assert not plan.ViewObject.Proxy.legends() and same(picture(), first)
+    plan.ViewObject.Visibility = True
+    assert plan.ViewObject.Proxy.legends()

@@ -37,7 +37,33 @@ def test_from_a_table_to_the_law_of_the_job():
     names = [table.item(row, 0).text() for row in range(table.rowCount())]
     assert names[:3] == ["coefficient\nmm²/N", "pressure\nexponent", "speed\nexponent"], names
     assert abs(float(table.item(1, 1).text().split()[0]) - 1) < 0.1
+
+    # What was fitted goes when a box, an entry or the table changes.
+    def gone():
+        return not visible(QtGui.QTableWidget, "calibrationTable") and not usable()
+
+    def usable():
+        return [b for b in visible(QtGui.QPushButton) if b.text() == "Use in the job"]
+
+    def fitted():
+        press("Fit")
+        wait(lambda: "median error" in field("calibrationState").text())
+        assert usable()
+
+    field("wearUnit").setText("2")
+    assert gone() and "has changed: fit again" in field("calibrationState").text()
+    field("wearUnit").setText("")
+    fitted()
+    type_in("grinds", "absent.csv")
+    assert gone()
+    type_in("grinds", "grinds.csv")
+    fitted()
+    Path("grinds.csv").write_text(Path("grinds.csv").read_text() + "\n")
+    press("Use in the job")
+    assert gone() and job.Law != "local"
+    fitted()
     field("ownWheel").setChecked(True)
+    assert gone()
     press("Fit")
     wait(lambda: "median error" in field("calibrationState").text())
     told = field("calibrationWarnings").text()
@@ -52,6 +78,7 @@ def test_from_a_table_to_the_law_of_the_job():
     steps = doc.UndoCount
     press("Use in the job")
     assert job.Law == "local"
+    assert "uses the calibrated law" in field("calibrationState").text()
     assert abs(job.LawCoefficient / 2e-5 - 1) < 0.1
     assert doc.UndoCount == steps + 1
     press("Larger plot")

@@ -179,7 +179,9 @@ def test_another_kind_of_machine_gets_values_of_its_own():
         settle()
 
     assert visible(QtGui.QWidget, "WheelRadius") and not visible(QtGui.QWidget, "RunWidth")
+    laid = list(path.Poses)
     kind("Free belt")
+    assert list(path.Poses) != laid  # the passes follow at once
     assert visible(QtGui.QWidget, "RunWidth") and not visible(QtGui.QWidget, "WheelRadius")
     # The belt gives way, and runs round the part.
     assert machine.ForceTravel.Value > travel and machine.ContactSpacing.Value > cell

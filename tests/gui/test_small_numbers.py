@@ -78,6 +78,12 @@ def wheel():
             turn(widget)
             assert shown(widget) == was, (widget.objectName(), was, shown(widget))
             assert not widget.hasFocus()
+            # Nor one that has the keyboard, as the first of a panel, or by the tab key.
+            widget.setFocus(QtCore.Qt.TabFocusReason)
+            settle()
+            turn(widget)
+            assert shown(widget) == was, (widget.objectName(), was, shown(widget))
+            view_widget().setFocus()
         return len(found)
 
     return fields, turn_over_all
@@ -133,6 +139,11 @@ def test_the_mouse_wheel_over_a_panel_changes_no_field():
         return radius.hasFocus()
 
     wait(clicked)
+    line = radius if isinstance(radius, QtGui.QLineEdit) else radius.findChild(QtGui.QLineEdit)
+    at, button = QtCore.QPointF(3, 3), QtCore.Qt.LeftButton
+    for kind in (QtCore.QEvent.MouseButtonPress, QtCore.QEvent.MouseButtonRelease):
+        event = QtGui.QMouseEvent(kind, at, button, button, QtCore.Qt.NoModifier)
+        QtGui.QApplication.sendEvent(line or radius, event)
     turn(radius)
     settle()
     assert doc.BeltMachine.WheelRadius.Value != 60

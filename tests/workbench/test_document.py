@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 import FreeCAD
 import Mesh
@@ -80,6 +81,37 @@ def test_a_macro_makes_a_job_and_its_result_survives():
     height = simulation.Proxy.field(simulation).height
     again = beltgrinding.simulate(job)
     assert again.Name == "Simulation" and (again.Proxy.field(again).height == height).all()
+
+
+@pytest.mark.freecad
+def test_a_result_of_the_same_numbers_is_up_to_date():
+    write_pass()
+    doc = FreeCAD.newDocument("digits")
+    job = make(block(doc))
+    beltgrinding.export_job(job, "digits.json")
+    data = json.loads(Path("digits.json").read_text())
+
+    def comes_back(**design):
+        data["design"].update(design)
+        Path("digits.json").write_text(json.dumps(data))
+        beltgrinding.run("digits.json").write("out")
+        return not beltgrinding.import_result(job, "out").OutOfDate
+
+    # FreeCAD changes a shape's text by drawing and saving it, and a rotation in its last digit.
+    shape = Part.Shape()
+    shape.importBrepFromString(data["design"]["brep"])
+    shape.tessellate(0.1)
+    text = shape.exportBrepToString() + "\n"
+    assert text != data["design"]["brep"]
+    for pose in data["programs"][0]["poses"]:
+        for key in ("qw", "qx", "qy", "qz"):
+            pose[key] = -float(np.nextafter(pose[key], 2.0))
+    assert comes_back(brep=text)
+    # Another shape, or another pose, is another job.
+    taller = Part.makeBox(60, 40, 20.001).exportBrepToString()
+    assert not comes_back(brep=taller)
+    data["programs"][0]["poses"][0]["x_mm"] += 1e-3
+    assert not comes_back(brep=text)
 
 
 @pytest.mark.freecad

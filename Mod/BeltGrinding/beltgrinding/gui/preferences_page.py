@@ -15,6 +15,7 @@ from ..objects.proxy import type_of
 from .common.compat import QtGui, translate
 from .common.kinds import Colour, Layout, Widget
 from .common.messages import error_text
+from .common.redraw import drawing
 from .widgets.form import quantity_field, show_quantity
 from .widgets.steady import steady
 
@@ -170,8 +171,9 @@ class ColourButton(QtGui.QPushButton):
 def take_effect() -> None:
     """Lets the preferences hold: the threads, and what is shown of all deviations that are open."""
     preferences.apply_threads()
+    drawing.ask_all()
     for dock in Gui.getMainWindow().findChildren(QtGui.QDockWidget):
-        if dock.objectName() in ("BeltGrinding_SectionDock", "BeltGrinding_PlaybackDock"):
+        if hasattr(dock, "preferences_changed"):
             dock.preferences_changed()
     for document in FreeCAD.listDocuments().values():
         for obj in document.Objects:
@@ -179,6 +181,5 @@ def take_effect() -> None:
                 continue
             try:
                 obj.Proxy.update(obj)
-                obj.ViewObject.Proxy.update_legend()
             except InputError as error:  # its result is gone
                 FreeCAD.Console.PrintWarning(f"{error_text(error)}\n")

@@ -5,29 +5,19 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-import math
 from typing import Any, NamedTuple
 
 import Mesh
-import numpy as np
 
-from ..base.kinds import Array, Floats
 from ..engine import InputError, core
 from ..job.tolerances import colour_scale
-from . import preferences
+from . import preferences, shown
 from .fields import field_of
 from .kinds import DocumentObject, Field, Limits, MeshShape, Scale
 from .properties import Output, add_outputs
 from .proxy import Proxy
+from .shown import BY_HAND, BY_PERCENTILE, BY_TOLERANCE, MODES, bounded, round_up
 
-DEVIATION, UNCERTAINTY = "deviation", "uncertainty"
-MEASURED, DIFFERENCE = (
-    "measured",
-    "difference",
-)  # of a scan: its height, and that less the predicted
-TEMPERATURE, ROUGHNESS = "temperature", "roughness"
-SHOWN = [DEVIATION, UNCERTAINTY, MEASURED, DIFFERENCE, TEMPERATURE, ROUGHNESS]
-BY_HAND, BY_TOLERANCE, BY_PERCENTILE = "by hand", "by tolerance", "by percentile"
 SETTINGS = (  # name, kind, first value, text
     ("Bounds", "Enumeration", [BY_HAND, BY_TOLERANCE, BY_PERCENTILE], "where the ramps end"),
     (
@@ -39,7 +29,6 @@ SETTINGS = (  # name, kind, first value, text
     ("Percentile", "Float", 99.0, "by percentile: so much of the area lies between the ends, %"),
     ("Bands", "Integer", 0, "steps of each ramp; 0: without steps"),
 )
-MOST_BANDS = 20
 OUTPUTS = (
     Output("VertexColors", "ColorList", "Deviation", "one colour per sample", True),
     Output(
@@ -137,10 +126,10 @@ class Deviation(Proxy):
                 "temperature: the greatest, of a job with Heat; roughness: Ra, of a job with Finish"
             )
             obj.addProperty("App::PropertyEnumeration", "ColourBy", "Deviation", text)
-            obj.ColourBy = SHOWN
-        if obj.getEnumerationsOfProperty("ColourBy") != SHOWN:  # an older file's
+            obj.ColourBy = MODES
+        if obj.getEnumerationsOfProperty("ColourBy") != MODES:  # an older file's
             before = obj.ColourBy
-            obj.ColourBy = SHOWN
+            obj.ColourBy = MODES
             obj.ColourBy = before
         for name, kind, value, text in SETTINGS:
             if name not in obj.PropertiesList:
@@ -165,9 +154,9 @@ class Deviation(Proxy):
         result = [simulation.Fingerprint, simulation.WallTime]
         bounds = [obj.Bounds, obj.TimesTolerance, obj.Percentile, obj.Bands]
         chosen = preferences.colours()
-        shown = [*scale, obj.ColourBy, *bounds, chosen and list(chosen), scanned]
+        asked = [*scale, obj.ColourBy, *bounds, chosen and list(chosen), scanned]
         before = json.loads(obj.Shown or "[null, null]")
-        if before == [result, shown]:
+        if before[:2] == [result, asked]:
             return
         field = field_of(simulation)
         if field is None:
@@ -176,50 +165,8 @@ class Deviation(Proxy):
                 "{object}: its height field is missing; simulate again",
                 object=simulation.Label,
             )
-        show(obj, field, scale, before[0] != result)
-        obj.Shown = json.dumps([result, shown], allow_nan=False)
-
-
-def _round_up(value: float) -> float:
-    """The next of 1, 2, 5, 10... above a value."""
-    if value <= 0.0:
-        return 0.001
-    power = 10.0 ** math.floor(math.log10(value))
-    return next(step * power for step in (1, 2, 5, 10) if step * power >= 0.999 * value)
-
-
-def bounded(obj: DocumentObject, field: Field, scale: Scale) -> Scale:
-    """``scale`` with the end of the ramps as the object's ``Bounds`` say, outside of the tolerance."""
-    lower, upper, limit = scale
-    widest = max(abs(lower), abs(upper))
-    if obj.Bounds == BY_TOLERANCE:
-        limit = obj.TimesTolerance * widest
-    elif obj.Bounds == BY_PERCENTILE:
-        limit = percentile(field, obj.Percentile)
-    return lower, upper, max(limit, 1.01 * widest, 1e-4)
-
-
-def percentile(field: Field, share: float) -> float:
-    """|deviation| in mm that ``share`` percent of the area lie within; missed samples are left out."""
-    found = (field.flags & core.MISSED) == 0
-    height, area = np.abs(field.height[found]), field.areas[found].astype(float)
-    if not len(height):
-        return 0.0
-    order = np.argsort(height)
-    so_far = np.cumsum(area[order])
-    k = np.searchsorted(so_far, np.clip(share, 0.0, 100.0) / 100.0 * so_far[-1])
-    return float(height[order[min(k, len(order) - 1)]])
-
-
-def scan_heights(obj: DocumentObject, field: Field) -> Floats:
-    """(n,) what a scan's colour mode shows, mm; NaN where the scan has nothing."""
-    measured = np.array(field.measured, dtype=float)
-    return measured if obj.ColourBy == MEASURED else measured - field.height
-
-
-def bands_of(obj: DocumentObject) -> int:
-    """The steps of each ramp; 0: none."""
-    return min(max(obj.Bands, 0), MOST_BANDS)
+        found = show(obj, field, scale, before[0] != result)
+        obj.Shown = json.dumps([result, asked, found._asdict()], allow_nan=False)
 
 
 class _Ready(NamedTuple):
@@ -280,11 +227,6 @@ def _mesh(ply: bytes) -> MeshShape:
     return mesh
 
 
-def temperature_span(obj: DocumentObject) -> float:
-    """K between the ends of the temperature's colours."""
-    return max(obj.GreatestTemperature - obj.StartTemperature, 1.0)
-
-
 def _show_temperatures(obj: DocumentObject, field: Field) -> None:
     stored = json.loads(getattr(obj.Simulation, "VerdictData", "") or "{}")
     heat = stored.get("verdict", {}).get("heat") if field.heat is not None else None
@@ -292,24 +234,6 @@ def _show_temperatures(obj: DocumentObject, field: Field) -> None:
     obj.GreatestTemperature = heat["worst"]["temperature_C"] if heat else 0.0
     obj.GreatestTemperatureAtMost = heat["worst"]["greatest_C"] if heat else 0.0
     obj.BurntArea = 100.0 * (heat["burnt_share"] or 0.0) if heat else 0.0
-
-
-def roughness_of(field: Field) -> Floats:
-    """(n,) Ra of every sample, µm; NaN where it is not known."""
-    return np.array(field.finish["roughness"], dtype=float)
-
-
-def _roughness_colours(obj: DocumentObject, field: Field) -> Array:
-    values = roughness_of(field)
-    unknown = np.isnan(values)
-    colours = core.magnitude_colours(np.nan_to_num(values), field.flags, roughness_span(obj))
-    colours[unknown] = core.colour_scale(-1.0, 1.0, 2.0, [np.nan])[0]
-    return colours
-
-
-def roughness_span(obj: DocumentObject) -> float:
-    """µm at which the roughness' colours end."""
-    return max(obj.GreatestRoughness, 1e-3)
 
 
 def _show_finish(obj: DocumentObject, field: Field) -> None:
@@ -323,27 +247,16 @@ def _show_finish(obj: DocumentObject, field: Field) -> None:
     obj.CrossedArea = -1.0 if crossed is None else 100.0 * crossed
 
 
-def show(obj: DocumentObject, field: Field, scale: Scale, new_mesh: bool = True) -> None:
-    """Shows a core.HeightField. ``scale``: lower and upper limit, end of the ramps, mm."""
+def show(obj: DocumentObject, field: Field, scale: Scale, new_mesh: bool = True) -> shown.Shown:
+    """Shows a core.HeightField; returns how. ``scale``: lower and upper limit, end of the ramps, mm."""
     scale = bounded(obj, field, scale)
     statistics = _statistics(field, scale[:2])
     sd = statistics.get("sd_p95", 0.0)
     obj.UncertaintyMean, obj.Uncertainty95 = statistics.get("sd_mean", 0.0), sd
     obj.ExpectedInTolerance = 100.0 * statistics.get("expected_in_tolerance_share", 0.0)
-    limit = obj.UncertaintyLimit = _round_up(sd)
+    obj.UncertaintyLimit = round_up(sd)
     _show_temperatures(obj, field)
     _show_finish(obj, field)
-    if obj.ColourBy == UNCERTAINTY and len(field.height_sd):
-        colours = core.uncertainty_colours(field, limit)
-    elif obj.ColourBy in (MEASURED, DIFFERENCE) and len(field.measured):
-        colours = core.height_colours(scan_heights(obj, field), field.flags, *scale)
-    elif obj.ColourBy == TEMPERATURE and field.heat is not None:
-        rise = np.array(field.heat["rise"], dtype=float)
-        colours = core.magnitude_colours(rise, field.flags, temperature_span(obj))
-    elif obj.ColourBy == ROUGHNESS and field.finish is not None:
-        colours = _roughness_colours(obj, field)
-    else:
-        colours = core.deviation_colours(field, *scale, bands_of(obj), preferences.colours())
     obj.ToleranceLower, obj.ToleranceUpper, obj.ColourLimit = scale
     for name, key in STATISTICS.items():
         setattr(obj, name, statistics[key])
@@ -351,4 +264,6 @@ def show(obj: DocumentObject, field: Field, scale: Scale, new_mesh: bool = True)
         setattr(obj, name, 100.0 * statistics[key])
     if new_mesh:  # an assignment to Mesh drops the colours: it comes first
         _lay_mesh(obj, field)
-    obj.VertexColors = colours.tolist()
+    found = shown.made(obj, field, scale, preferences.colours())
+    obj.VertexColors = found.colours_of(field).tolist()
+    return found

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import tempfile
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import Part
 
 from ..base import schemas
 from ..base.kinds import Json
@@ -21,11 +23,14 @@ from .belt_machine import BeltMachine
 from .damage import check_job
 from .geometry import faces_digest
 from .job_data import KEYS, child, children, design, flips, required
-from .kinds import DocumentObject
+from .kinds import DocumentObject, PartFace
 from .program_values import no_path
 from .properties import to_job
 from .robot_path import RobotPath
 from .stock import Stock
+
+TURN = ("qw", "qx", "qy", "qz")  # of a pose
+SAME = 1e-9  # of a number, mm: what digits of a file and a placement round
 
 
 def without_geometry(job: DocumentObject) -> dict[str, Any]:
@@ -151,6 +156,40 @@ def inputs(data: Json) -> dict[str, Any]:
     placed = [_without_file(body) for body in data["cell"].get("bodies", [])]
     data["cell"] = {**data["cell"], "bodies": placed}
     return data
+
+
+def same_inputs(one: Json, other: Json) -> bool:
+    """Whether results of two jobs' plain data are the same: numbers but for the last digits, which a file and a
+    placement round, shapes by what they look like."""
+    return _alike(inputs(one), inputs(other))
+
+
+def _alike(one: Any, other: Any, key: str = "") -> bool:
+    if isinstance(one, dict) and isinstance(other, dict):
+        if one.keys() != other.keys():
+            return False
+        turns = [key for key in TURN if key in one]
+        turned = all(_alike(-one[key], other[key]) for key in turns)  # the same rotation
+        return all(turned and k in turns or _alike(one[k], other[k], k) for k in one)
+    if isinstance(one, (list, tuple)) and isinstance(other, (list, tuple)):
+        if len(one) != len(other):
+            return False
+        if key.startswith("quaternion") and not all(map(_alike, one, other)):
+            return all(_alike(-a, b) for a, b in zip(one, other))  # the same rotation
+        return all(map(_alike, one, other))
+    if isinstance(one, float) or isinstance(other, float):
+        numbers = all(isinstance(value, (int, float)) for value in (one, other))
+        return numbers and math.isclose(one, other, rel_tol=SAME, abs_tol=SAME)
+    if key == "brep" and isinstance(one, str) and isinstance(other, str) and one != other:
+        return faces_digest(_faces(one)) == faces_digest(_faces(other))
+    return bool(one == other)
+
+
+def _faces(brep: str) -> list[PartFace]:
+    shape = Part.Shape()
+    shape.importBrepFromString(brep)
+    faces: list[PartFace] = shape.Faces
+    return faces
 
 
 def _without_file(data: Json) -> dict[str, Any]:

@@ -80,12 +80,6 @@ def deviation_unit() -> DeviationUnit:
     return next((unit for unit in UNITS if unit.symbol == symbol), UNITS[0])
 
 
-def length_text(value: float, more: int = 0, sign: str = "+") -> str:
-    """A deviation in mm as a number with its unit; ``more``: decimals beyond the usual."""
-    unit = deviation_unit()
-    return f"{value / unit.size:{sign}.{unit.decimals + more}f} {unit.symbol}"
-
-
 def apply_threads() -> int:
     """Tells the core how many threads it may use; 0: all. Returns the number in use."""
     try:

@@ -167,7 +167,8 @@ def _lay(obj: DocumentObject, job: Json, settings: Json, digest: str) -> None:
         obj.Along, obj.Direction = found["along"], FreeCAD.Vector(*found["direction"])
         digest = _inputs(obj)[2]
     else:
-        found = raster.raster(job, settings)
+        text = FreeCAD.Qt.translate("BeltGrinding", "Laying the passes")
+        found = waiting.wait(lambda context: raster.raster(job, settings, context), text)
     if obj.Planned:
         found["warnings"] = [
             *found["warnings"],

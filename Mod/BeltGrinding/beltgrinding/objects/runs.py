@@ -54,7 +54,7 @@ def import_result(job: DocumentObject, folder: Path | str) -> DocumentObject:
     """
     result = Result.read(folder)
     with job_inputs.scratch_folder() as scratch:
-        same = job_inputs.inputs(job_inputs.to_data(job, scratch)) == job_inputs.inputs(result.job)
+        same = job_inputs.same_inputs(job_inputs.to_data(job, scratch), result.job)
     return store_result(job, result, job_inputs.fingerprint(job) if same else "other inputs")
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...objects.kinds import DocumentObject
 from ..common.compat import QtCore, QtGui, translate
+from ..common.figures import figure
 from ..common.kinds import Array, Painter, QtEvent, known
 from ..common.theme import readable, theme
 from .strip_chart import envelope
@@ -82,7 +83,7 @@ class FeedChart(QtGui.QWidget):
         if self.rapid[k]:
             return told + "\n" + translate("BeltGrinding", "positioning: nothing is ground")
         for name, unit, old, new in self.rows:
-            told += f"\n{name}: {old[k]:.4g} → {new[k]:.4g} {unit}"
+            told += f"\n{name}: {figure(old[k], '.4g')} → {figure(new[k], '.4g')} {unit}"
         return told
 
     def event(self, event: QtEvent) -> bool:
@@ -155,7 +156,7 @@ class FeedChart(QtGui.QWidget):
             y = lower - share * (lower - upper)
             painter.drawLine(QtCore.QPointF(LEFT, y), QtCore.QPointF(self.width() - RIGHT, y))
         painter.setPen(QtGui.QColor(theme().text))
-        title = f"{name}, 0…{most:.4g} {unit}"
+        title = f"{name}, 0…{figure(most, '.4g')} {unit}"
         painter.drawText(QtCore.QPointF(LEFT, top + TOP - 5), title)
         for values, colour, width in ((old, OLD, 1.0), (new, NEW, 1.4)):
             painter.setPen(QtGui.QPen(readable(colour), width))

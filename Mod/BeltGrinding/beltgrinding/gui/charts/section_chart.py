@@ -7,8 +7,9 @@ import math
 import numpy as np
 
 from ...inspection import section_plot
-from ...objects.preferences import deviation_unit, length_text
+from ...objects.preferences import deviation_unit
 from ..common.compat import QtCore, QtGui, translate
+from ..common.figures import figure, length_text
 from ..common.kinds import (
     Array,
     Colour,
@@ -134,7 +135,7 @@ class SectionChart(QtGui.QWidget):
             painter.drawLine(QtCore.QPointF(at, area.top()), QtCore.QPointF(at, area.bottom()))
             painter.setPen(dark)
             box = QtCore.QRectF(at - 40, area.bottom() + 3, 80, 16)
-            painter.drawText(box, QtCore.Qt.AlignCenter, f"{value + 0.0:.{decimals}f}")
+            painter.drawText(box, QtCore.Qt.AlignCenter, figure(value + 0.0, f".{decimals}f"))
         size = self.height_unit()
         low, high = y0 / size, (y0 + height) / size
         values, decimals = section_plot.ticks(low, high, max(int(area.height() / 45), 2))
@@ -145,7 +146,7 @@ class SectionChart(QtGui.QWidget):
             painter.setPen(dark)
             box = QtCore.QRectF(0, at - 9, area.left() - 5, 18)
             right = QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter
-            painter.drawText(box, int(right), f"{value + 0.0:.{decimals}f}")
+            painter.drawText(box, int(right), figure(value + 0.0, f".{decimals}f"))
         painter.setPen(dark)
         box = QtCore.QRectF(area.left(), area.bottom() + 20, area.width(), 18)
         painter.drawText(box, QtCore.Qt.AlignCenter, self._x_label())
@@ -164,7 +165,7 @@ class SectionChart(QtGui.QWidget):
         if self._unrolled():
             text = translate("BeltGrinding", "arc length, mm; upright: height above the design, {}")
             return text.format(deviation_unit().symbol)
-        factor = f"{known(self.plot)['exaggeration']:g}"
+        factor = figure(known(self.plot)["exaggeration"], "g")
         return translate("BeltGrinding", "in the plane, mm; heights ×{}").format(factor)
 
     def _legend(self, painter: Painter) -> None:
@@ -210,7 +211,7 @@ class SectionChart(QtGui.QWidget):
             translate("BeltGrinding", "Face {}, {:.2f} mm along").format(
                 one["face"] + 1, one["s"][k]
             ),
-            f"({x:.2f}, {y:.2f}, {z:.2f})",
+            f"({figure(x, '.2f')}, {figure(y, '.2f')}, {figure(z, '.2f')})",
             translate("BeltGrinding", "deviation {}").format(length_text(one["height"][k], 1)),
             translate("BeltGrinding", "stock {}, removed {}").format(
                 length_text(one["stock_height"][k], 1, ""),

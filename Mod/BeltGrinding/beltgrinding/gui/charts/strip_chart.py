@@ -9,6 +9,7 @@ import numpy as np
 from ...objects.kinds import Event
 from ..common import event_texts
 from ..common.compat import QtCore, QtGui, translate
+from ..common.figures import figure
 from ..common.kinds import Array, Image, Painter, QtEvent
 from ..common.theme import readable, theme
 
@@ -119,7 +120,9 @@ class StripChart(QtGui.QWidget):
         height = self._height()
         for k, (name, unit, colour) in enumerate(self.rows()):
             painter.setPen(readable(colour))
-            value = f"{self.lines[name][1][index]:.4g} {unit}" if index is not None else ""
+            value = (
+                f"{figure(self.lines[name][1][index], '.4g')} {unit}" if index is not None else ""
+            )
             box = QtCore.QRect(6, int(EVENTS + k * height + 0.5 * height), LEFT - 16, 16)
             painter.drawText(box, int(QtCore.Qt.AlignLeft), value)
         painter.end()
@@ -146,7 +149,7 @@ class StripChart(QtGui.QWidget):
             painter.setPen(QtGui.QColor(theme().grid))
             painter.drawLine(LEFT, round(bottom), LEFT + width, round(bottom))
             painter.setPen(QtGui.QColor(theme().text))
-            label = f"{self.texts[name]}, 0…{most:.3g} {unit}"
+            label = f"{self.texts[name]}, 0…{figure(most, '.3g')} {unit}"
             painter.drawText(6, round(EVENTS + k * height + 0.5 * height - 2), label)
             x, y = envelope(times, values, self.duration, width)
             y = bottom - (bottom - top) * y / (most or 1.0)

@@ -11,6 +11,7 @@ from ...objects import api
 from ..common.compat import QtGui, translate
 from ..common.save_dialog import file_to_write
 from ..common.transaction import transaction
+from ..common.task_panel import show_panel
 from .base import active_job, expand
 
 
@@ -23,7 +24,9 @@ def open_job() -> None:
     path = QtGui.QFileDialog.getOpenFileName(Gui.getMainWindow(), title, "", _jobs_filter())[0]
     if not path:
         return
-    document = FreeCAD.ActiveDocument or FreeCAD.newDocument(Path(path).stem)
+    document = FreeCAD.ActiveDocument
+    if document is None or document.Objects:  # the part is no other one's
+        document = FreeCAD.newDocument(Path(path).stem)
     with transaction(document, title):
         expand(api.open_job(document, path))
         Gui.SendMsgToActiveView("ViewFit")
@@ -56,4 +59,4 @@ def open_example(example: str) -> None:
 def calibrate() -> None:
     from ..panels.calibration_panel import CalibrationPanel
 
-    Gui.Control.showDialog(CalibrationPanel(active_job()))
+    show_panel(CalibrationPanel(active_job()), active_job())

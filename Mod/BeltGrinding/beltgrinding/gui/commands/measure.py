@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import FreeCADGui as Gui
-
 from ...objects import api, deviation
 from ...objects.job_data import children
 from ..common.compat import translate
 from ..common.transaction import transaction
+from ..common.task_panel import show_panel
 from .base import active_job
 
 
@@ -27,4 +26,4 @@ def compare_scan() -> None:
 
     job = active_job()
     job.Document.openTransaction(translate("BeltGrinding", "Compare a scan"))
-    Gui.Control.showDialog(ScanPanel(job))
+    show_panel(ScanPanel(job), job)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import FreeCADGui as Gui
 
 from ...objects import api
 from ...objects.kinds import Sheet
 from ..common.compat import translate
 from ..common.save_dialog import file_to_write
+from ..common.task_panel import show_panel
 from .base import active_job, has_result, make
 
 
@@ -35,7 +35,7 @@ def write_report() -> None:
 def check_settings() -> None:
     from ..panels.settings_check_panel import SettingsCheckPanel
 
-    Gui.Control.showDialog(SettingsCheckPanel(active_job()))
+    show_panel(SettingsCheckPanel(active_job()), active_job())
 
 
 def make_figures() -> None:

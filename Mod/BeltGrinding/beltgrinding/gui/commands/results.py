@@ -9,6 +9,7 @@ from ...objects.job_data import child
 from ...objects.kinds import DocumentObject
 from ..common.compat import translate
 from ..common.transaction import commit
+from ..common.task_panel import show_panel
 from ..panels.panel import edit
 from .base import active_job, make, make_once
 from .set_up import new_job
@@ -17,27 +18,27 @@ from .set_up import new_job
 def simulate() -> None:
     from ..panels.simulation_panel import SimulationPanel
 
-    Gui.Control.showDialog(SimulationPanel(active_job(), True))
+    show_panel(SimulationPanel(active_job(), True), active_job())
 
 
 def plan_feeds() -> None:
     from ..panels.plan_panel import show
 
     title = translate("BeltGrinding", "Plan")
-    make_once(plan.Plan, title, lambda job: api.make_plan(job, compute=False), show, panel=False)
+    make_once(plan.Plan, title, lambda job: api.make_plan(job, compute=False), show)
 
 
 def plan_belts() -> None:
     from ..panels.belt_plan_panel import BeltPlanPanel
 
-    Gui.Control.showDialog(BeltPlanPanel(active_job()))
+    show_panel(BeltPlanPanel(active_job()), active_job())
 
 
 def show_study() -> None:
     from ..docks.study_dock import show
 
     title = translate("BeltGrinding", "Study")
-    make_once(study.Study, title, lambda job: api.make_study(job, compute=False), show, panel=False)
+    make_once(study.Study, title, lambda job: api.make_study(job, compute=False), show)
 
 
 def grind_faces() -> None:
@@ -58,7 +59,7 @@ def grind_faces() -> None:
         Gui.Selection.clearSelection()  # its colour would hide those of the plan
         show(obj)
 
-    make(job.Document, translate("BeltGrinding", "Plan"), passes, show_plan, panel=False)
+    make(job.Document, translate("BeltGrinding", "Plan"), passes, show_plan)
 
 
 def show_deviation() -> None:
@@ -90,4 +91,4 @@ def play() -> None:
 def show_contact() -> None:
     from ..panels.contact_panel import ContactPanel
 
-    Gui.Control.showDialog(ContactPanel(active_job()))
+    show_panel(ContactPanel(active_job()), active_job())

@@ -10,6 +10,7 @@ from ...objects import api, belt_machine, first_settings, preferences, stock
 from ...objects.kinds import DocumentObject
 from ..common.compat import translate
 from ..common.transaction import transaction
+from ..common.task_panel import show_panel
 from ..panels.panel import edit
 from .base import active_job, expand, make, make_once
 
@@ -60,7 +61,12 @@ def show_cell() -> None:
 
     job = active_job()
     title = translate("BeltGrinding", "Cell")
-    make(job.Document, title, lambda: CellPanel(api.make_belt_machine(job)), Gui.Control.showDialog)
+    make(
+        job.Document,
+        title,
+        lambda: CellPanel(api.make_belt_machine(job)),
+        lambda panel: show_panel(panel, job),
+    )
 
 
 def edit_belt() -> None:

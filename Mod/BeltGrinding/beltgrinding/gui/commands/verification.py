@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import FreeCADGui as Gui
-
 from ...objects import api
 from ..common.compat import translate
+from ..common.task_panel import show_panel
 from .base import active_job, make
 
 
@@ -15,7 +14,7 @@ def edit_zones() -> None:
     job = active_job()
     if not job.Document.HasPendingTransaction:
         job.Document.openTransaction(translate("BeltGrinding", "Tolerance zones"))
-    Gui.Control.showDialog(ZonesPanel(job))
+    show_panel(ZonesPanel(job), job)
 
 
 def show_verdict() -> None:

@@ -6,12 +6,18 @@ import FreeCAD
 from PySide import QtCore, QtGui  # FreeCAD's shim: PySide2 or 6; 0.20 has the widgets in QtGui
 
 from ...objects.kinds import ViewObject
+from .figures import Text
 from .kinds import Buttons
 
 __all__ = ["QtCore", "QtGui", "VERSION", "buttons", "make_matt", "translate"]
 
 VERSION = tuple(int("".join(c for c in part if c.isdigit()) or 0) for part in FreeCAD.Version()[:2])
-translate = FreeCAD.Qt.translate
+_translated = FreeCAD.Qt.translate
+
+
+def translate(context: str, text: str) -> str:
+    """A text in the window's language; its ``format`` writes numbers as FreeCAD does."""
+    return Text(_translated(context, text))
 
 
 def buttons(*names: str) -> Buttons:

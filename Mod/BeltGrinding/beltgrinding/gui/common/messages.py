@@ -56,7 +56,13 @@ def inform(text: str) -> None:
 
 
 def _show(text: str, name: str, icon: Icon) -> None:
-    box = QtGui.QMessageBox(Gui.getMainWindow())
+    window = Gui.getMainWindow()
+    for one in window.findChildren(QtGui.QMessageBox, name):
+        if one.isVisible():  # not one upon the other
+            if text not in one.text().split("\n\n"):
+                one.setText(f"{one.text()}\n\n{text}")
+            return
+    box = QtGui.QMessageBox(window)
     box.setObjectName(name)
     box.setIcon(icon)
     box.setWindowTitle(translate("BeltGrinding", "Belt grinding"))

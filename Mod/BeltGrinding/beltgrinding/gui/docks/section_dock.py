@@ -11,12 +11,13 @@ import numpy as np
 
 from ...engine import InputError
 from ...inspection import section as sections, section_plot
-from ...objects import preferences, section as objects
+from ...objects import section as objects
 from ...objects.fields import field_of, forget_field
 from ...objects.kinds import Document, DocumentObject, Point
 from ...objects.proxy import type_of
 from ..charts.section_chart import SectionChart
 from ..common.compat import QtCore, QtGui, translate
+from ..common.figures import length_text
 from ..common.kinds import QtEvent, View3D, Widget
 from ..common.messages import error_text
 from ..common.save_dialog import file_to_write
@@ -181,8 +182,8 @@ class SectionDock(ObjectDock):
         ).format(
             obj.Length.Value,
             obj.InTolerance,
-            *(preferences.length_text(v.Value, 1) for v in (obj.Minimum, obj.Maximum, obj.Mean)),
-            preferences.length_text(obj.RemovedMean.Value, 1, ""),
+            *(length_text(v.Value, 1) for v in (obj.Minimum, obj.Maximum, obj.Mean)),
+            length_text(obj.RemovedMean.Value, 1, ""),
         )
         if obj.OutOfDate:
             text += "\n" + translate("BeltGrinding", "Out of date: simulate again.")

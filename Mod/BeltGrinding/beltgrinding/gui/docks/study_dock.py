@@ -23,8 +23,10 @@ from ..common.messages import error_text, inform, tell
 from ..common.report_language import language, words
 from ..common.save_dialog import file_to_write
 from ..common.transaction import transaction
+from ..common.task_panel import show_panel
 from ..panels.study_panel import StudyPanel
 from ..widgets.picture_label import PictureLabel
+from ..widgets.steady import steady
 from .object_dock import ObjectDock
 from .study_cells import NUMBER, cell
 
@@ -96,7 +98,7 @@ class StudyDock(ObjectDock):
     def _charts(self) -> Widget:
         side, layout = QtGui.QWidget(), QtGui.QVBoxLayout()
         side.setLayout(layout)
-        self.kind, self.figure = QtGui.QComboBox(), QtGui.QComboBox()
+        self.kind, self.figure = steady(QtGui.QComboBox()), steady(QtGui.QComboBox())
         self.kind.setObjectName("studyChart")
         self.figure.setObjectName("studyFigure")
         for key, text in (
@@ -390,4 +392,4 @@ def _best(found: Json | None) -> list[str]:
 def show(obj: DocumentObject) -> None:
     """Opens the panel of a Study object; its table comes in the dock."""
     if obj.getParentGroup() is not None and not Gui.Control.activeDialog():
-        Gui.Control.showDialog(StudyPanel(obj, StudyDock.open))
+        show_panel(StudyPanel(obj, StudyDock.open), obj)

@@ -120,12 +120,23 @@ class VerdictDock(ObjectDock):
             self._forget()
         super().show_object(obj)
 
+    def preferences_changed(self) -> None:
+        """The unit of deviations may be another one."""
+        if self.living() is not None:
+            self.refresh()
+
     def refresh(self) -> None:
         """Shows the object as it is now."""
         obj = self.living()
         if obj is None:
             return self._forget()
         self.found = obj.Proxy.data(obj)
+        for made, rows in (
+            (self.regions, region_rows),
+            (self.clusters, cluster_rows),
+            (self.motions, motion_rows),
+        ):
+            made.setHorizontalHeaderLabels(rows.titles())  # with the unit as it is now
         self.cluster_of = None
         self._unmark()
         if self.found is None:

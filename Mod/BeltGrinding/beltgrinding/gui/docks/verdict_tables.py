@@ -6,7 +6,9 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from ...inspection import finish_zones
+from ...objects.preferences import deviation_unit
 from ..common.compat import QtGui, translate
+from ..common.figures import figure, length_number
 from ..common.kinds import Colour, FaceName, Json, Table
 from ..common.messages import note_texts
 from ..common.theme import theme
@@ -98,6 +100,11 @@ class _Rows:
         return self.make(*arguments)
 
 
+def _in_unit(title: str) -> str:
+    """A column's title with the unit that deviations are told in."""
+    return title.format(deviation_unit().symbol)
+
+
 def _region_titles() -> list[str]:
     return [
         translate("BeltGrinding", "Where"),
@@ -105,9 +112,9 @@ def _region_titles() -> list[str]:
         translate("BeltGrinding", "In, %"),
         translate("BeltGrinding", "Left, %"),
         translate("BeltGrinding", "Deep, %"),
-        translate("BeltGrinding", "Worst, mm"),
-        translate("BeltGrinding", "Beyond, mm"),
-        translate("BeltGrinding", "Waves Wt, mm"),
+        _in_unit(translate("BeltGrinding", "Worst, {}")),
+        _in_unit(translate("BeltGrinding", "Beyond, {}")),
+        _in_unit(translate("BeltGrinding", "Waves Wt, {}")),
     ]
 
 
@@ -136,7 +143,10 @@ def _regions(found: Json, face_name: FaceName) -> list[Any]:
         rows += _finish(name, zone.get("finish") or {})
     for face in found["faces"]:
         wave = face["waviness"]
-        told = [f"{wave[name]['Wt_mm']:.4f}" if wave[name] else "–" for name in ("along", "across")]
+        told = [
+            length_number(wave[name]["Wt_mm"], 1, "") if wave[name] else "–"
+            for name in ("along", "across")
+        ]
         texts = [face_name(face["face"]), word(face["verdict"]), *_figures(face)]
         rows.append((face, [*texts, " / ".join(told)], _colour(face["verdict"])))
     return rows
@@ -158,7 +168,7 @@ def _finish(name: str, finish: Json) -> list[Any]:
         texts = [
             titles[what],
             word(one["verdict"]),
-            f"{100 * max(good, 0.0):.2f}",
+            figure(100 * max(good, 0.0), ".2f"),
             "",
             "",
             "",
@@ -166,8 +176,8 @@ def _finish(name: str, finish: Json) -> list[Any]:
             "",
         ]
         if what == "Ra" and worst is not None:
-            texts[5] = f"{worst['Ra_um']:.2f} µm"
-            texts[6] = f"{worst['Ra_um'] - one['limit_um']:+.2f} µm"
+            texts[5] = f"{figure(worst['Ra_um'], '.2f')} µm"
+            texts[6] = f"{figure(worst['Ra_um'] - one['limit_um'], '+.2f')} µm"
         place = worst or (one.get("unknown") or {}).get("place")
         rows.append(({"worst": place}, texts, _colour(one["verdict"])))
     return rows
@@ -177,16 +187,22 @@ def _figures(region: Json) -> list[str]:
     if region["worst"] is None:
         return [""] * 5
     worst = region["worst"]
-    shares = [f"{100 * region[f'{name}_share']:.2f}" for name in ("in", "above", "below")]
-    return [*shares, f"{worst['value_mm']:+.3f}", f"{worst['beyond_mm']:+.3f}"]
+    shares = [
+        f"{figure(100 * region[f'{name}_share'], '.2f')}" for name in ("in", "above", "below")
+    ]
+    return [
+        *shares,
+        length_number(worst["value_mm"]),
+        length_number(worst["beyond_mm"]),
+    ]
 
 
 def _thickness(thick: Json) -> list[str]:
     if thick["worst"] is None:
         return [word(thick["verdict"]), *[""] * 6]
     worst = thick["worst"]
-    share = f"{100 * (1 - thick['out_share']):.2f}"
-    value, beyond = f"{worst['value_mm']:+.3f}", f"{worst['beyond_mm']:+.3f}"
+    share = figure(100 * (1 - thick["out_share"]), ".2f")
+    value, beyond = length_number(worst["value_mm"]), length_number(worst["beyond_mm"])
     return [word(thick["verdict"]), share, "", "", value, beyond, ""]
 
 
@@ -195,7 +211,7 @@ def _cluster_titles() -> list[str]:
         "",
         translate("BeltGrinding", "What"),
         translate("BeltGrinding", "Area, mm²"),
-        translate("BeltGrinding", "Worst, mm"),
+        _in_unit(translate("BeltGrinding", "Worst, {}")),
         translate("BeltGrinding", "Size, mm"),
         translate("BeltGrinding", "Line"),
         translate("BeltGrinding", "Faces"),
@@ -221,9 +237,9 @@ def _clusters(found: Json, face_name: FaceName) -> list[Any]:
                 [
                     str(cluster["number"]),
                     sides[cluster["side"]],
-                    f"{cluster['area_mm2']:.2f}",
-                    f"{cluster['worst']['value_mm']:+.3f}",
-                    f"{cluster['extent_mm']:.1f} × {cluster['width_mm']:.1f}",
+                    figure(cluster["area_mm2"], ".2f"),
+                    length_number(cluster["worst"]["value_mm"]),
+                    f"{figure(cluster['extent_mm'], '.1f')} × {figure(cluster['width_mm'], '.1f')}",
                     line,
                     ", ".join(face_name(face) for face in cluster["faces"]),
                 ],
@@ -238,7 +254,7 @@ def _motion_titles() -> list[str]:
         translate("BeltGrinding", "Share, %"),
         translate("BeltGrinding", "Line"),
         translate("BeltGrinding", "Pose"),
-        translate("BeltGrinding", "Depth, mm"),
+        _in_unit(translate("BeltGrinding", "Depth, {}")),
         translate("BeltGrinding", "Program"),
     ]
 
@@ -251,10 +267,10 @@ def _motions(cluster: Json, programs: Sequence[str]) -> list[Any]:
         rows.append(
             (
                 [
-                    f"{100 * motion['share']:.1f}",
+                    figure(100 * motion["share"], ".1f"),
                     str(motion["line"] or ""),
                     str(motion["pose"] + 1) if known else "",
-                    f"{motion['depth_mm']:.3f}",
+                    length_number(motion["depth_mm"], 0, ""),
                     programs[motion["program"]]["name"] if known else "",
                 ],
                 None,

@@ -15,6 +15,7 @@ from ...engine import Cancelled, InputError
 from ...objects import job_data, job_inputs, properties
 from ...objects.kinds import DocumentObject
 from ..common.compat import QtCore, QtGui, buttons, translate
+from ..common.figures import figure
 from ..common.icons import qicon
 from ..common.kinds import Buttons, Context, Json, Layout, Table, Widget
 from ..common.messages import error_text
@@ -47,6 +48,7 @@ class CalibrationPanel:
         self.job = job
         self.task: Background | None = None
         self.result: Json | None = None  # of ``calibrate.fit``
+        self.fitted: tuple[Any, ...] = ()  # what it was fitted to
         self.picture = QtGui.QPixmap()
         self.form = QtGui.QWidget()
         self.form.destroyed.connect(lambda *_: self._gone())  # whatever closes it
@@ -100,7 +102,10 @@ class CalibrationPanel:
             )
         )
         body.addWidget(self.own_wheel)
-        self.start = self._button(body, translate("BeltGrinding", "Fit"), self.fit)
+        row = QtGui.QHBoxLayout()
+        self.start = self._button(row, translate("BeltGrinding", "Fit"), self.fit)
+        self.use = self._button(row, translate("BeltGrinding", "Use in the job"), self.apply)
+        body.addLayout(row)
         self.state = QtGui.QLabel()
         self.state.setObjectName("calibrationState")
         self.state.setWordWrap(True)
@@ -116,9 +121,13 @@ class CalibrationPanel:
         self.warnings.setObjectName("calibrationWarnings")
         self.warnings.setWordWrap(True)
         body.addWidget(self.warnings)
-        self.use = self._button(body, translate("BeltGrinding", "Use in the job"), self.apply)
         body.addStretch()
         self._show_parts(False)
+        for signal in ("fileNameChanged(const QString &)", "fileNameSelected(const QString &)"):
+            self.file.connect(self.file, QtCore.SIGNAL(signal), lambda _: self._look())
+        for entry in (self.diameter, self.wear_unit):
+            entry.textChanged.connect(lambda _: self._look())
+        self.own_wheel.toggled.connect(lambda _: self._look())
 
     def _number(self, fields: Layout, name: str, text: str, tip: str) -> Widget:
         """An entry that may stay empty."""
@@ -173,6 +182,30 @@ class CalibrationPanel:
             return
         self.file.setProperty("fileName", path)
 
+    def _inputs(self) -> tuple[Any, ...]:
+        """What a fit is of: the table as it is now, and the entries."""
+        path = str(self.file.property("fileName") or "")
+        try:
+            found = Path(path).stat()
+            version = found.st_mtime_ns, found.st_size
+        except OSError:
+            version = None
+        entries = self.diameter.text(), self.wear_unit.text(), self.own_wheel.isChecked()
+        return path, version, *entries
+
+    def _look(self) -> bool:
+        """Takes what was fitted away where it is of another table, or of other entries; whether it is there."""
+        if self.fitted and self.fitted != self._inputs():
+            if self.task is not None:
+                self.task.abandon()
+                self.task = None
+                self.start.setEnabled(True)
+            self.fitted, self.result = (), None
+            self._show_parts(False)
+            text = translate("BeltGrinding", "The table or an entry has changed: fit again.")
+            self.state.setText(text)
+        return bool(self.fitted)
+
     def fit(self) -> None:
         """Reads the table and fits, in a thread of its own."""
         path = str(self.file.property("fileName") or "")
@@ -190,6 +223,7 @@ class CalibrationPanel:
                 return
         self._show_parts(False)
         self.start.setEnabled(False)
+        self.fitted = self._inputs()
         self.state.setText(translate("BeltGrinding", "Fitting ..."))
 
         def work(_: Context) -> tuple[Any, ...]:
@@ -209,6 +243,7 @@ class CalibrationPanel:
         if isinstance(error, Cancelled):
             return
         if error is not None:
+            self.fitted = ()
             self.state.setText(error_text(error))
             if not isinstance(error, InputError):
                 raise error
@@ -243,12 +278,12 @@ class CalibrationPanel:
             name = one["name"].replace("_", "\n", 1).replace("_", " ")
             interval = translate("BeltGrinding", "fixed")
             if one["free"]:
-                low, high = (f"{one[side]:.3g}" for side in ("low", "high"))
+                low, high = (figure(one[side], ".3g") for side in ("low", "high"))
                 between = "\n... " if len(low + high) > LONG else " ... "
                 interval = low + between + high
             texts = (
                 f"{name}\n{one['unit'].replace('mm2', 'mm²')}".strip(),
-                f"{one['value']:.4g}\n({interval})",
+                f"{figure(one['value'], '.4g')}\n({interval})",
             )
             for column, text in enumerate(texts):
                 self.table.setItem(row, column, QtGui.QTableWidgetItem(text))
@@ -273,6 +308,8 @@ class CalibrationPanel:
 
     def apply(self) -> None:
         """Writes the law's parameters into the job's properties, in one undo step."""
+        if not self._look():
+            return  # the file has been written anew
         document = self.job.Document
         document.openTransaction(translate("BeltGrinding", "Calibrate removal law"))
         try:

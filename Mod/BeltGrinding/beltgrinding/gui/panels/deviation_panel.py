@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from ...engine import InputError
-from ...objects import preferences
 from ...objects.kinds import DocumentObject
 from ...objects.simulation import is_coarse
 from ..common.compat import QtGui, translate
+from ..common.figures import figure, length_text
 from ..common.kinds import Quantity
 from ..common.messages import error_text
 from ..scene.probe import Probe
@@ -101,12 +101,12 @@ class DeviationPanel(Panel):
         self.tell(_doubt(obj), True)
 
         def mm(value: Quantity, sign: str = "+") -> str:
-            return preferences.length_text(value.Value, 1, sign)
+            return length_text(value.Value, 1, sign)
 
         rows: tuple[tuple[str, str], ...] = (
-            (translate("BeltGrinding", "In tolerance"), f"{obj.InTolerance:.2f} %"),
-            (translate("BeltGrinding", "Too much left"), f"{obj.AboveTolerance:.2f} %"),
-            (translate("BeltGrinding", "Cut too deep"), f"{obj.BelowTolerance:.2f} %"),
+            (translate("BeltGrinding", "In tolerance"), f"{figure(obj.InTolerance, '.2f')} %"),
+            (translate("BeltGrinding", "Too much left"), f"{figure(obj.AboveTolerance, '.2f')} %"),
+            (translate("BeltGrinding", "Cut too deep"), f"{figure(obj.BelowTolerance, '.2f')} %"),
             (translate("BeltGrinding", "Minimum"), mm(obj.Minimum)),
             (translate("BeltGrinding", "Maximum"), mm(obj.Maximum)),
             (translate("BeltGrinding", "Mean"), mm(obj.Mean)),
@@ -114,14 +114,17 @@ class DeviationPanel(Panel):
             (translate("BeltGrinding", "5 % lie below"), mm(obj.Percentile05)),
             (translate("BeltGrinding", "Median"), mm(obj.Percentile50)),
             (translate("BeltGrinding", "95 % lie below"), mm(obj.Percentile95)),
-            (translate("BeltGrinding", "Removed"), f"{obj.RemovedVolume.Value:,.1f} mm³"),
-            (translate("BeltGrinding", "Area"), f"{obj.DesignArea.Value:,.1f} mm²"),
+            (
+                translate("BeltGrinding", "Removed"),
+                f"{figure(obj.RemovedVolume.Value, ',.1f')} mm³",
+            ),
+            (translate("BeltGrinding", "Area"), f"{figure(obj.DesignArea.Value, ',.1f')} mm²"),
         )
         if obj.ExpectedInTolerance > 0.0:
             rows += (
                 (
                     translate("BeltGrinding", "In tol., expected"),
-                    f"{obj.ExpectedInTolerance:.2f} %",
+                    f"{figure(obj.ExpectedInTolerance, '.2f')} %",
                 ),
                 (
                     translate("BeltGrinding", "Uncertainty, mean"),
@@ -133,20 +136,31 @@ class DeviationPanel(Panel):
                 ),
             )
         if obj.GreatestTemperature > 0.0:  # never without its range
-            most = f"{obj.GreatestTemperatureAtMost:.0f} °C"
+            most = f"{figure(obj.GreatestTemperatureAtMost, '.0f')} °C"
             rows += (
-                (translate("BeltGrinding", "Hottest"), f"{obj.GreatestTemperature:.0f} °C"),
+                (
+                    translate("BeltGrinding", "Hottest"),
+                    f"{figure(obj.GreatestTemperature, '.0f')} °C",
+                ),
                 (translate("BeltGrinding", "Hottest, at most"), most),
             )
         if obj.GreatestRoughness > 0.0:  # never without how much of it is known
-            known = f"{obj.RoughnessKnown:.1f} %"
+            known = f"{figure(obj.RoughnessKnown, '.1f')} %"
             rows += (
-                (translate("BeltGrinding", "Ra, mean"), f"{obj.MeanRoughness:.2f} µm"),
-                (translate("BeltGrinding", "Ra, greatest"), f"{obj.GreatestRoughness:.2f} µm"),
+                (translate("BeltGrinding", "Ra, mean"), f"{figure(obj.MeanRoughness, '.2f')} µm"),
+                (
+                    translate("BeltGrinding", "Ra, greatest"),
+                    f"{figure(obj.GreatestRoughness, '.2f')} µm",
+                ),
                 (translate("BeltGrinding", "Ra known"), known),
             )
         if obj.CrossedArea >= 0.0:
-            rows += ((translate("BeltGrinding", "Crossed scratches"), f"{obj.CrossedArea:.1f} %"),)
+            rows += (
+                (
+                    translate("BeltGrinding", "Crossed scratches"),
+                    f"{figure(obj.CrossedArea, '.1f')} %",
+                ),
+            )
         self.table.setRowCount(len(rows))
         for i, (name, text) in enumerate(rows):
             self.table.setItem(i, 0, QtGui.QTableWidgetItem(name))

@@ -10,6 +10,7 @@ from ...calibration import calibrate as calibration, finish, finish_table
 from ...engine import Cancelled, InputError
 from ...objects import job_inputs
 from ..common.compat import QtCore, QtGui, translate
+from ..common.figures import figure
 from ..common.kinds import Json, Table, Widget
 from ..common.messages import error_text
 from ..common.runner import TOLD, Background
@@ -163,7 +164,10 @@ class FitWindow(QtGui.QDialog):
         for row, one in enumerate(rows):
             value, interval = "", translate("BeltGrinding", "not varied")
             if one["free"]:
-                value, interval = f"{one['value']:.3g}", f"{one['low']:.3g} … {one['high']:.3g}"
+                value, interval = (
+                    figure(one["value"], ".3g"),
+                    f"{figure(one['low'], '.3g')} … {figure(one['high'], '.3g')}",
+                )
             for column, text in enumerate((parameter(one["name"]), value, interval)):
                 table.setItem(row, column, QtGui.QTableWidgetItem(text))
         table.resizeColumnsToContents()

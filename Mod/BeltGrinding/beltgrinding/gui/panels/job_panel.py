@@ -15,6 +15,7 @@ from ...objects.raster_path import RasterPath, proposed, replace_proposed
 from ...objects.stock import Stock
 from ..common import gates
 from ..common.compat import QtCore, QtGui, translate
+from ..common.figures import figure
 from ..common.kinds import Widget
 from ..common.messages import error_text
 from ..scene.face_tint import FaceTint
@@ -131,13 +132,19 @@ class JobPanel(Panel):
         self.folds.append(fold)
 
     def _sampling_text(self) -> str:
-        lower, upper = (f"{v.Value:+g}" for v in (self.obj.ToleranceLower, self.obj.ToleranceUpper))
+        lower, upper = (
+            figure(v.Value, "+g") for v in (self.obj.ToleranceLower, self.obj.ToleranceUpper)
+        )
         spacing = self.obj.Spacing
         chosen = translate("BeltGrinding", "spacing chosen")
         return f"{lower} … {upper} mm; {spacing.UserString if spacing.Value > 0 else chosen}"
 
     def _law_text(self) -> str:
-        return f"K = {self.obj.LawCoefficient:.3g} mm²/N" if self.obj.Law != "geometric" else ""
+        return (
+            f"K = {figure(self.obj.LawCoefficient, '.3g')} mm²/N"
+            if self.obj.Law != "geometric"
+            else ""
+        )
 
     def _whole(self) -> Iterator[Fold]:
         """Stock, machine and passes, in short; each has a panel of its own with all there is to it."""
@@ -303,6 +310,9 @@ class JobPanel(Panel):
             first["notes"], self.kind = [error], self._kind()
             return
         first_settings.apply(self.obj, found, first)
+        for path in job_data.children(self.obj, RasterPath):
+            if proposed(path):
+                path.recompute()  # they are drawn as they will be
         # What they bring is not known before the passes are laid.
         self.first = self.obj.Proxy.proposed = {**first, **found, "in_tolerance": None}
         self.chosen, self.kind = self._numbers(), self._kind()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from ...objects import belt_machine as machines
 from ...objects.kinds import DocumentObject
 from ..common.compat import translate
+from ..common.figures import figure
 from ..widgets.form import Form
 
 OF_WHEEL, OF_BELT = {"WheelRadius", "WheelWidth"}, {"RunLength", "RunWidth"}
@@ -42,5 +43,7 @@ class MachineForm(Form):
     def summary(self) -> str:
         """What the machine is, in a few words."""
         if self.obj.Kind in machines.WHEELS:
-            return f"R {self.obj.WheelRadius.Value:g} × {self.obj.WheelWidth.Value:g} mm"
-        return f"{self.obj.RunLength.Value:g} × {self.obj.RunWidth.Value:g} mm"
+            return f"R {figure(self.obj.WheelRadius.Value, 'g')} × {figure(self.obj.WheelWidth.Value, 'g')} mm"
+        return (
+            f"{figure(self.obj.RunLength.Value, 'g')} × {figure(self.obj.RunWidth.Value, 'g')} mm"
+        )

@@ -11,6 +11,7 @@ from ...objects import preferences, stored_facts
 from ...objects.kinds import DocumentObject
 from ...planning import pictures, reasons
 from ..common.compat import QtCore, QtGui, translate
+from ..common.figures import figure
 from ..charts.feed_chart import FeedChart
 from ..common.kinds import Json, Table, Texts
 from ..common.report_language import language
@@ -86,7 +87,7 @@ class PlanFigures(QtGui.QWidget):
         unit = preferences.deviation_unit()
 
         def percent(key: str) -> list[str]:
-            return [f"{100.0 * one[key]:.1f} %" for one in (before, after)]
+            return [f"{figure(100.0 * one[key], '.1f')} %" for one in (before, after)]
 
         rows: tuple[Any, ...] = (
             (translate("BeltGrinding", "In tolerance"), percent("in_tolerance")),
@@ -94,11 +95,14 @@ class PlanFigures(QtGui.QWidget):
             (translate("BeltGrinding", "Cut too deep"), percent("below")),
             (
                 translate("BeltGrinding", "RMS, {}").format(unit.symbol),
-                [f"{one['rms_mm'] / unit.size:.{unit.decimals}f}" for one in (before, after)],
+                [
+                    figure(one["rms_mm"] / unit.size, f".{unit.decimals}f")
+                    for one in (before, after)
+                ],
             ),
             (
                 translate("BeltGrinding", "Process time, s"),
-                [f"{one['process_time_s']:.1f}" for one in (before, after)],
+                [figure(one["process_time_s"], ".1f") for one in (before, after)],
             ),
         )
         rows += tuple(
@@ -120,7 +124,7 @@ class PlanFigures(QtGui.QWidget):
         shares = data["out_of_tolerance"]
         told = [
             f'<span style="color:#{pictures.COLOURS[state] >> 8:06x}">■</span> '
-            f"{100.0 * shares[word]:.1f} % {self.words[word]}"
+            f"{figure(100.0 * shares[word], '.1f')} % {self.words[word]}"
             for state, word in sorted(reasons.WORDS.items(), key=lambda one: -shares[one[1]])
             if shares[word] > pictures.SMALLEST
         ]
@@ -157,9 +161,9 @@ class PlanFigures(QtGui.QWidget):
 
 def _round(number: int, one: Json) -> tuple[str, str, str, str]:
     """The texts of a row: a round of a plan, or passes that were tried."""
-    share = f"{100.0 * one['in_tolerance']:.1f} %"
+    share = f"{figure(100.0 * one['in_tolerance'], '.1f')} %"
     if "change" in one:
-        name = f"{one['step_over_mm']:.3g} mm"
+        name = f"{figure(one['step_over_mm'], '.3g')} mm"
         if one["repeats"] > 1:
             name += f" × {one['repeats']}"
         return name, share, "", ""
@@ -171,8 +175,8 @@ def _round(number: int, one: Json) -> tuple[str, str, str, str]:
     if one.get("resolution") == "coarse":
         name = translate("BeltGrinding", "{} (coarse)").format(name)
     unit = preferences.deviation_unit()
-    rms = f"{one['rms_mm'] / unit.size:.{unit.decimals}f}"
-    return name, share, rms, f"{one['process_time_s']:.1f}"
+    rms = figure(one["rms_mm"] / unit.size, f".{unit.decimals}f")
+    return name, share, rms, figure(one["process_time_s"], ".1f")
 
 
 def _checked(obj: DocumentObject, files: bool) -> list[str]:

@@ -20,6 +20,7 @@ from ..common.kinds import Widget
 from ..common.messages import error_text
 from ..common.plan_runner import PlanRunner, words
 from ..common.transaction import commit, transaction
+from ..common.task_panel import show_panel
 from ..widgets import kept_motions
 from ..widgets.fold import Fold, slim
 from ..widgets.form import Form
@@ -72,6 +73,8 @@ class PlanPanel(RunPanel):
         body.addWidget(self.keep)
         body.addStretch()
         slim(self.form)
+        self.begin_made(obj)
+        obj.ViewObject.Visibility = True
         self._open()
         self._enable()
         self.show(None)
@@ -300,7 +303,8 @@ class PlanPanel(RunPanel):
         self.kept.setText(", ".join(filter(None, [self.kept.text().strip(), added])))
 
     def _open(self) -> None:
-        self.document.openTransaction(translate("BeltGrinding", "Settings of the plan"))
+        if not self.document.HasPendingTransaction:
+            self.document.openTransaction(translate("BeltGrinding", "Settings of the plan"))
 
     def _commit(self) -> None:
         commit(self.document)
@@ -344,7 +348,10 @@ class PlanPanel(RunPanel):
         return ""
 
     def reject(self) -> bool:
+        if self.end_made():
+            return super().reject()
         self._commit()
+        self.obj.ViewObject.Visibility = False  # the colours of its reasons go with their words
         self.document.recompute()
         return super().reject()
 
@@ -352,4 +359,4 @@ class PlanPanel(RunPanel):
 def show(obj: DocumentObject) -> None:
     """Opens the panel of a Plan object."""
     if obj.getParentGroup() is not None and not Gui.Control.activeDialog():
-        Gui.Control.showDialog(PlanPanel(obj))
+        show_panel(PlanPanel(obj), obj)

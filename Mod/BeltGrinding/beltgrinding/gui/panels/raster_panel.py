@@ -12,6 +12,7 @@ from ...objects import raster_path, stored_facts
 from ...objects.kinds import DocumentObject
 from ...objects.raster_path import NO_PASS, NO_ROOM
 from ..common.compat import QtCore, QtGui, translate
+from ..common.figures import figure
 from ..common.kinds import Changed, Widget
 from ..common.messages import error_text
 from ..common.report_language import language
@@ -307,7 +308,9 @@ class RasterPanel(Panel):
         for state, share, text in words:
             if share > 0.0:
                 colour = QtGui.QColor.fromRgbF(*COLOURS[state]).name()
-                lines.append(f'<span style="color:{colour}">\u25a0</span> {share:.1f} % {text}')
+                lines.append(
+                    f'<span style="color:{colour}">\u25a0</span> {figure(share, ".1f")} % {text}'
+                )
         self.left.setText("<br>".join(lines))
         self.left.setVisible(bool(lines))
 

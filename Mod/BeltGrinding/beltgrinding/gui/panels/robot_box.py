@@ -14,6 +14,7 @@ from ...presets import library as presets, robot as robots
 from ...geometry.body_names import LINKS
 from ..common import event_texts
 from ..common.compat import QtGui, translate
+from ..common.figures import figure
 from ..common.kinds import Context, Numbers
 from ..common.messages import error_text
 from ..common.runner import Background
@@ -128,7 +129,7 @@ class RobotBox(QtGui.QGroupBox):
         if joints is None:
             self.joints.setText(translate("BeltGrinding", "Out of reach at this pose."))
             return
-        angles = ", ".join(f"{angle:.1f}" for angle in joints)
+        angles = ", ".join(figure(angle, ".1f") for angle in joints)
         self.joints.setText(translate("BeltGrinding", "Joints: {}°").format(angles))
 
     def start(self) -> None:

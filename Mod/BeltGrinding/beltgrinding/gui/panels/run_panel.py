@@ -20,6 +20,7 @@ from ..common.messages import error_text
 from ..common.status_progress import StatusProgress, painted_once
 from ..common.theme import warning_style
 from ..common.time_left import TimeLeft, duration
+from ..common.transaction import abort
 
 if TYPE_CHECKING:
     from ..common.runner import Runner
@@ -44,6 +45,21 @@ class RunPanel:
         self.bar = QtGui.QProgressBar()
         self.bar.setRange(0, 1000)
         self.cancel = self._button("cancel", translate("BeltGrinding", "Cancel"), self.stop)
+
+    def begin_made(self, obj: DocumentObject) -> None:
+        """Remembers whether the open undo step has just made the panel's object, and as what."""
+        self.made = obj if obj.Document.HasPendingTransaction and not obj.Fingerprint else None
+        self.made_with = obj.Proxy.settings(obj)
+
+    def end_made(self) -> bool:
+        """Takes the object back that was made for the panel, if the panel is closed at once; whether it did."""
+        obj, document = self.made, self.job.Document
+        if obj is None or self.runner or not document.HasPendingTransaction:
+            return False
+        if obj.Fingerprint or obj.Proxy.settings(obj) != self.made_with:
+            return False
+        abort(document)
+        return True
 
     def doing(self) -> str:
         """What goes on, with {} for the time."""

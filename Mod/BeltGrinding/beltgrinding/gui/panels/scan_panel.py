@@ -9,11 +9,12 @@ from typing import Any
 
 from ...calibration import learning
 from ...engine import InputError
-from ...objects import deviation, ground_mesh, part_scan, preferences, simulation
+from ...objects import deviation, ground_mesh, part_scan, shown, simulation
 from ...objects.job_data import child, children
 from ...objects.kinds import DocumentObject
 from ...scan import comparison as scan, start as scan_start
 from ..common.compat import QtGui, translate
+from ..common.figures import figure, length_text
 from ..common.kinds import Context, Json, Layout, Widget
 from ..common.messages import error_text
 from ..common.runner import Background
@@ -195,12 +196,12 @@ class ScanPanel(Panel):
             return
         result, figures = found
         part_scan.store(self.obj, result, figures)
-        shown = child(self.job, deviation.Deviation)
-        if shown is not None:
-            shown.ColourBy = deviation.DIFFERENCE
+        compared = child(self.job, deviation.Deviation)
+        if compared is not None:
+            compared.ColourBy = shown.DIFFERENCE
             for mesh in children(self.job, ground_mesh.GroundMesh):
                 mesh.ViewObject.Visibility = False  # its surface is the same
-            shown.ViewObject.Visibility = True
+            compared.ViewObject.Visibility = True
         self.obj.touch()
         self.document.recompute()
         self.show(figures)
@@ -240,7 +241,7 @@ class ScanPanel(Panel):
             }.get(one["parameter"], one["parameter"].replace("_", " "))
             values = (one["before"], one["after"], *one["interval"])
             lines.append(
-                f"{name}: {values[0]:.3g} → {values[1]:.3g} ({values[2]:.3g}…{values[3]:.3g})"
+                f"{name}: {figure(values[0], '.3g')} → {figure(values[1], '.3g')} ({figure(values[2], '.3g')}…{figure(values[3], '.3g')})"
             )
         lines.append(
             translate("BeltGrinding", "The job has this law now; simulate or plan the next part.")
@@ -265,13 +266,13 @@ class ScanPanel(Panel):
         """The figures of a comparison."""
 
         def mm(value: float, sign: str = "+") -> str:
-            return preferences.length_text(value, 1, sign)
+            return length_text(value, 1, sign)
 
         alignment, difference = figures["alignment"], figures["difference_mm"]
         rows = [
             (
                 translate("BeltGrinding", "Area measured"),
-                f"{100 * figures['measured_area_share']:.1f} %",
+                f"{figure(100 * figures['measured_area_share'], '.1f')} %",
             ),
             (translate("BeltGrinding", "Measured, mean"), mm(figures["measured_mm"]["mean"])),
             (translate("BeltGrinding", "Difference, mean"), mm(difference["mean"])),
@@ -280,7 +281,7 @@ class ScanPanel(Panel):
             (translate("BeltGrinding", "95 % lie below"), mm(difference["p95"])),
             (
                 translate("BeltGrinding", "Same verdict"),
-                f"{100 * figures['same_verdict_area_share']:.1f} %",
+                f"{figure(100 * figures['same_verdict_area_share'], '.1f')} %",
             ),
         ]
         if alignment:
@@ -288,7 +289,7 @@ class ScanPanel(Panel):
                 (translate("BeltGrinding", "Alignment, rms"), mm(alignment["rms_mm"], "")),
                 (
                     translate("BeltGrinding", "Points used"),
-                    f"{100 * alignment['used_share']:.1f} %",
+                    f"{figure(100 * alignment['used_share'], '.1f')} %",
                 ),
             ]
         self.table.setRowCount(len(rows))

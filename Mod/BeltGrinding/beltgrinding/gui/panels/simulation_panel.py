@@ -23,6 +23,7 @@ from ..common.report_language import language
 from ..common.runner import Runner
 from ..common.theme import warning_style
 from ..common.verdict_words import headline, shares
+from ..common.task_panel import show_panel
 from ..widgets.event_moment import EventMoment
 from ..widgets.event_table import EventTable
 from .run_panel import RunPanel
@@ -213,4 +214,4 @@ def show_result(simulation: DocumentObject) -> None:
     """Opens the panel with the result of a Simulation object."""
     job = simulation.getParentGroup()
     if job is not None and not Gui.Control.activeDialog():
-        Gui.Control.showDialog(SimulationPanel(job, False))
+        show_panel(SimulationPanel(job, False), job)

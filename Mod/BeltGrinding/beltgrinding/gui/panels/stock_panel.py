@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from ...engine import InputError
-from ...objects import preferences, stock_scan
+from ...objects import stock_scan
 from ...objects.geometry import placement_from_job
 from ...objects.kinds import DocumentObject
 from ...scan import start as scan_start
 from ..common.compat import QtGui, translate
+from ..common.figures import length_text
 from ..common.messages import error_text
 from ..common.runner import Background
 from ..widgets.form import Form
@@ -99,7 +100,7 @@ class StockPanel(Panel):
         self.obj.FilePlacement = placement_from_job(placement)
         self.fields.refresh("FilePlacement")
         text = translate("BeltGrinding", "Laid on the design with {} rms.").format(
-            preferences.length_text(figures["rms_mm"], 1, "")
+            length_text(figures["rms_mm"], 1, "")
         )
         warnings = [error_text(warning) for warning in figures["warnings"]]
         self.tell("\n".join([text, *warnings]), bool(warnings))

@@ -60,6 +60,7 @@ class StudyPanel(RunPanel):
         body.addWidget(self.state)
         body.addStretch()
         slim(self.form)
+        self.begin_made(obj)
         self._open()
         self._arrange(False)
         self.show(None)
@@ -300,7 +301,8 @@ class StudyPanel(RunPanel):
             setattr(self.obj, name, text)
 
     def _open(self) -> None:
-        self.document.openTransaction(translate("BeltGrinding", "Settings of the study"))
+        if not self.document.HasPendingTransaction:
+            self.document.openTransaction(translate("BeltGrinding", "Settings of the study"))
 
     def _commit(self) -> None:
         commit(self.document)
@@ -313,6 +315,8 @@ class StudyPanel(RunPanel):
             widget.setEnabled(not running)
 
     def reject(self) -> bool:
+        if self.end_made():
+            return super().reject()
         self._commit()
         self.document.recompute()
         return super().reject()

@@ -8,27 +8,22 @@ import numpy as np
 from pivy import coin
 
 from ...base.kinds import known
-from ...objects import preferences
-from ...objects.deviation import (
-    DIFFERENCE,
-    MEASURED,
-    ROUGHNESS,
-    TEMPERATURE,
-    UNCERTAINTY,
-    bands_of,
-    roughness_of,
-    roughness_span,
-    scan_heights,
-    temperature_span,
-)
+from ...objects import shown
 from ...objects.fields import field_of
 from ...objects.kinds import DocumentObject, Field, ViewObject
+from ...objects.shown import Shown
 from ..common.kinds import Node
+from ..common.redraw import Once
 from . import field_view
 from .field_view import FieldView
 from .shapes3d import unpickable
 
 PLAIN = "Shaded"  # the display mode that is drawn here; FreeCAD draws the others
+MODES = {
+    shown.UNCERTAINTY: field_view.UNCERTAINTY,
+    shown.TEMPERATURE: field_view.TEMPERATURE,
+    shown.ROUGHNESS: field_view.ROUGHNESS,
+}
 
 
 class CrispColours:
@@ -38,16 +33,30 @@ class CrispColours:
     def __init__(self, root: Node) -> None:
         self.field: Field | None = None
         self.shape: FieldView | None = None
+        self.once, self.plain = Once(), False
         self.switch, self.mesh_style = coin.SoSwitch(), coin.SoDrawStyle()
         self.mesh_style.style = coin.SoDrawStyle.FILLED
         root.insertChild(self.mesh_style, 0)
         root.insertChild(self.switch, 0)
 
-    def update(self, view: ViewObject) -> None:
-        """Draws the object of a view provider as it is now."""
-        if not _drawable(view) or not self._load(view.Object):
-            return self.hide()
-        self._colour(view.Object)
+    def draw(self, view: ViewObject, visible: bool, plain: int = 0) -> None:
+        """Draws the object of a view provider as it is now, where that can be done here; ``plain``: 0xRRGGBBAA, all in
+        this tone, for what lies over it."""
+        self.plain = False
+        if not visible:
+            self.switch.whichChild = coin.SO_SWITCH_NONE
+            return
+        picture = shown.of(view.Object)
+        if picture is None or not _drawable(view) or not self._load(view.Object):
+            self._leave()
+            return
+        self.plain = bool(plain)
+        if self.once.needed(picture, plain):
+            if plain:
+                size = known(self.field).size
+                known(self.shape).set_colours(np.full(size, plain, dtype=np.uint32))
+            else:
+                self._colour(picture)
         self.switch.whichChild = coin.SO_SWITCH_ALL
         self.mesh_style.style = coin.SoDrawStyle.INVISIBLE
         self.mesh_style.setOverride(True)
@@ -56,9 +65,9 @@ class CrispColours:
         """Whether the colours are drawn here, and not by FreeCAD."""
         return self.shape is not None
 
-    def hide(self) -> None:
+    def _leave(self) -> None:
         """Leaves the drawing to FreeCAD."""
-        self.field = self.shape = None
+        self.field = self.shape = self.once.key = None
         self.switch.whichChild = coin.SO_SWITCH_NONE
         self.switch.removeAllChildren()
         self.mesh_style.setOverride(False)
@@ -72,7 +81,7 @@ class CrispColours:
             return False
         if field is self.field:
             return True
-        self.field, self.shape = field, FieldView(field)
+        self.field, self.shape, self.once.key = field, FieldView(field), None
         self.switch.removeAllChildren()
         drawn = coin.SoSeparator()
         drawn.addChild(unpickable())
@@ -80,22 +89,20 @@ class CrispColours:
         self.switch.addChild(drawn)
         return True
 
-    def _colour(self, obj: DocumentObject) -> None:
+    def _colour(self, picture: Shown) -> None:
         field, shape = known(self.field), known(self.shape)
-        scale = (obj.ToleranceLower.Value, obj.ToleranceUpper.Value, obj.ColourLimit.Value)
-        if obj.ColourBy == UNCERTAINTY and len(field.height_sd):
-            shape.colour_by(field_view.UNCERTAINTY, obj.UncertaintyLimit.Value)
-        elif obj.ColourBy in (MEASURED, DIFFERENCE) and len(field.measured):
-            heights = scan_heights(obj, field)
-            shape.colour_by(field_view.DEVIATION, *scale, values=heights)
-        elif obj.ColourBy == TEMPERATURE and field.heat is not None:
-            rise = np.array(field.heat["rise"], dtype=float)
-            shape.colour_by(field_view.TEMPERATURE, temperature_span(obj), values=rise)
-        elif obj.ColourBy == ROUGHNESS and field.finish is not None:
-            rough = roughness_of(field)
-            shape.colour_by(field_view.ROUGHNESS, roughness_span(obj), values=rough)
+        if not picture.known:
+            shape.set_colours(picture.colours_of(field))
+        elif picture.mode in MODES:
+            span = max(picture.end - picture.start, shown.LEAST_SPAN[picture.mode])
+            shape.colour_by(MODES[picture.mode], span, values=picture.values(field))
         else:
-            shape.colour_by(field_view.DEVIATION, *scale, bands_of(obj), preferences.colours())
+            steps = picture.bands, picture.colours
+            if picture.mode != shown.DEVIATION:
+                steps = 0, None
+            shape.colour_by(
+                field_view.DEVIATION, *picture.scale, *steps, values=picture.values(field)
+            )
 
 
 def _drawable(view: ViewObject) -> bool:
@@ -106,5 +113,8 @@ def _drawable(view: ViewObject) -> bool:
         return False
     if view.DisplayMode != PLAIN or view.Transparency or not obj.Placement.isIdentity():
         return False
-    # Else the mesh is still that of another result.
-    return json.loads(obj.Shown or "[null]")[0] == [simulation.Fingerprint, simulation.WallTime]
+    # Else the mesh is still that of another result, or of the same before it was compared with a scan.
+    told = json.loads(obj.Shown or "[null]")
+    same = told[0] == [simulation.Fingerprint, simulation.WallTime]
+    earlier = len(told) < 3  # of an earlier version, which did not keep the scan
+    return same and (earlier or told[1][-1] == getattr(simulation, "ScanFigures", ""))

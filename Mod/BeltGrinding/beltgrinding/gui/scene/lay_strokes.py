@@ -12,6 +12,8 @@ from ...inspection import finish
 from ...objects.fields import field_of
 from ...objects.kinds import DocumentObject, Field
 from ..common.kinds import Array, Node, Rgb
+from ..common.compat import translate
+from .legend_picture import Mark, packed
 from .shapes3d import separator, unpickable
 
 MOST = 1000  # strokes: enough to see the lay, few enough to see what lies below
@@ -41,6 +43,25 @@ def lay_strokes(obj: DocumentObject) -> Node | None:
         if chosen.any():
             root.addChild(_lines(ends[chosen], colour))
     return root
+
+
+def marks(lay: Node) -> list[Mark]:
+    """What a legend says of the strokes in a node."""
+    colours = coin.SoSearchAction()
+    colours.setType(coin.SoBaseColor.getClassTypeId())
+    colours.setInterest(coin.SoSearchAction.ALL)
+    colours.setSearchingAll(True)
+    colours.apply(lay)
+    paths = colours.getPaths()
+    drawn = [
+        tuple(round(v, 3) for v in paths[k].getTail().rgb[0].getValue())
+        for k in range(paths.getLength())
+    ]
+    words = (
+        (PLAIN, translate("BeltGrinding", "scratches")),
+        (CROSSED, translate("BeltGrinding", "crossed scratches")),
+    )
+    return [Mark(packed(colour), text, True) for colour, text in words if colour in drawn]
 
 
 def strokes(field: Field, rest: float, angle_deg: float, most: int = MOST) -> tuple[Array, Array]:

@@ -12,22 +12,68 @@ import numpy as np
 from pivy import coin
 
 from ...engine import core
-from ...objects import preferences
+from ...objects import preferences, shown
 from ..common.compat import translate
+from ..common.figures import figure
 from ..common.kinds import Array
 from ..common.theme import theme
 from . import legend_picture
 from .labels import pixels
-from .legend_picture import Spec
+from .legend_picture import Mark, Spec
 
 BAR_STEPS = 240
 LABEL_GAP = 0.07  # of half the bar: a line of text
 # Whether values lie beyond the lower end and the upper one; true, too, where that is not known.
-OPEN = (True, True)
+OPEN, NOT_OPEN = (True, True), (False, False)
 BORDER = 0.008  # of the view's width
 CUBE, CROSS = 0.28, 0.14  # of the view's height: FreeCAD's cube in a corner, its axes in another
 BETTER = 0.02  # of the part's points that another place must hide less, for the legend to go there
 KEPT = 6  # pictures: views of other sizes, and both themes
+
+
+def of(picture: shown.Shown, name: str, out_of_date: bool = False) -> Spec:
+    """The ``Spec`` of what a Deviation named ``name`` shows."""
+    if not picture.known:
+        found = _unknown(picture.mode, out_of_date)
+    elif picture.mode == shown.UNCERTAINTY:
+        found = uncertainty(picture.end, out_of_date)
+    elif picture.mode == shown.TEMPERATURE:
+        found = temperature(picture.start, picture.end - picture.start, out_of_date)
+    elif picture.mode == shown.ROUGHNESS:
+        found = roughness(picture.end, out_of_date)
+    elif picture.mode in (shown.MEASURED, shown.DIFFERENCE):
+        difference = picture.mode == shown.DIFFERENCE
+        found = scan(*picture.scale, out_of_date, difference, picture.beyond)
+    else:
+        text = translate("BeltGrinding", "deviation, {}")
+        found = _deviation(
+            *(*picture.scale, out_of_date, picture.bands, picture.colours),
+            *(text, picture.beyond, True),
+        )
+    return found._replace(name=name, beyond=picture.beyond)
+
+
+def _unknown(mode: str, out_of_date: bool) -> Spec:
+    """Of a result that has nothing of what a mode shows."""
+    titles = {
+        shown.UNCERTAINTY: translate("BeltGrinding", "uncertainty"),
+        shown.MEASURED: translate("BeltGrinding", "scan"),
+        shown.DIFFERENCE: translate("BeltGrinding", "scan - prediction"),
+        shown.TEMPERATURE: translate("BeltGrinding", "greatest temperature"),
+        shown.ROUGHNESS: translate("BeltGrinding", "roughness Ra"),
+    }
+    reasons = {
+        shown.UNCERTAINTY: translate("BeltGrinding", "not known: the law was not calibrated"),
+        shown.MEASURED: translate("BeltGrinding", "no scan: compare one"),
+        shown.DIFFERENCE: translate("BeltGrinding", "no scan: compare one"),
+        shown.TEMPERATURE: translate("BeltGrinding", "not computed: the job is without heat"),
+        shown.ROUGHNESS: translate(
+            "BeltGrinding", "not known anywhere: the belt or its wear was not measured"
+        ),
+    }
+    grey = int(core.colour_scale(-1.0, 1.0, 2.0, [np.nan])[0])
+    marks = (Mark(grey, reasons[mode]),)
+    return Spec([], {}, titles[mode], ("", ""), NOT_OPEN, _warning(out_of_date), "", marks)
 
 
 def scan(
@@ -55,12 +101,13 @@ def deviation(
     out_of_date: bool = False,
     bands: int = 0,
     beyond: tuple[bool, bool] = OPEN,
+    standard: bool = False,
 ) -> Spec:
     """The ``Spec`` of the deviation: (mm) tolerance band, and where the ramps end; ``bands``: steps of
-    each ramp; ``beyond``: as OPEN.
+    each ramp; ``beyond``: as OPEN; ``standard``: without the preferences' colours.
     """
     text = translate("BeltGrinding", "deviation, {}")
-    chosen = preferences.colours()
+    chosen = None if standard else preferences.colours()
     return _deviation(lower, upper, limit, out_of_date, bands, chosen, text, beyond, True)
 
 
@@ -78,7 +125,7 @@ def _deviation(
     values = [-limit + 2 * limit * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)]
     unit = preferences.deviation_unit()
     labels = {
-        _height(value, limit): f"{value / unit.size:+.{unit.decimals}f}"
+        _height(value, limit): figure(value / unit.size, f"+.{unit.decimals}f")
         for value in label_values(lower, upper, limit, bands)
     }
     colours = core.colour_scale(lower, upper, limit, values, bands, choice)
@@ -135,7 +182,7 @@ def uncertainty(limit: float, out_of_date: bool = False) -> Spec:
         limit, [limit * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)]
     )
     unit = preferences.deviation_unit()
-    labels = {k / 4: f"{limit * k / 4 / unit.size:.3g}" for k in range(5)}
+    labels = {k / 4: figure(limit * k / 4 / unit.size, ".3g") for k in range(5)}
     text = translate("BeltGrinding", "uncertainty, {}").format(unit.symbol)
     return Spec(colours.tolist(), labels, text, ("", ""), (False, True), _warning(out_of_date))
 
@@ -143,7 +190,7 @@ def uncertainty(limit: float, out_of_date: bool = False) -> Spec:
 def temperature(start: float, span: float, out_of_date: bool = False) -> Spec:
     """The ``Spec`` of the greatest temperature, from ``start`` degrees C to ``span`` K above."""
     colours = core.uncertainty_scale(span, [span * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)])
-    labels = {k / 4: f"{start + span * k / 4:.0f}" for k in range(5)}
+    labels = {k / 4: figure(start + span * k / 4, ".0f") for k in range(5)}
     text = translate("BeltGrinding", "greatest temperature, °C")
     return Spec(colours.tolist(), labels, text, ("", ""), (False, False), _warning(out_of_date))
 
@@ -151,7 +198,7 @@ def temperature(start: float, span: float, out_of_date: bool = False) -> Spec:
 def roughness(span: float, out_of_date: bool = False) -> Spec:
     """The ``Spec`` of Ra, up to ``span`` µm."""
     colours = core.uncertainty_scale(span, [span * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)])
-    labels = {k / 4: f"{span * k / 4:.2g}" for k in range(5)}
+    labels = {k / 4: figure(span * k / 4, ".2g") for k in range(5)}
     text = translate("BeltGrinding", "roughness Ra, µm")
     return Spec(colours.tolist(), labels, text, ("", ""), (False, False), _warning(out_of_date))
 
@@ -164,7 +211,7 @@ class Legend:
     def __init__(self) -> None:
         self.spec: Spec | None = None
         self.points: Array = np.zeros((0, 3))
-        self.column = 0  # how many others stand beside it
+        self.beside: list[Legend] = []  # that stand between it and the view's side
         self.places: dict[tuple[float, float], int] = {}  # by a view's size: where it stood last
         # By a view's size and whether the theme is dark: size and bytes.
         self.pictures: dict[tuple[int, int, bool], tuple[tuple[int, int], bytes]] = {}
@@ -172,6 +219,7 @@ class Legend:
         self.box: tuple[int, ...] | None = None  # left, bottom, right, top in pixels, as drawn last
         self.node = coin.SoType.fromName("SoSkipBoundingGroup").createInstance()
         self.node = self.node or coin.SoSeparator()
+        self.node.ref()  # pivy holds none of what createInstance made: taken out of a scene, it would be gone
         watch = coin.SoCallback()
         watch.setCallback(self._watch, None)
         annotation = coin.SoAnnotation()
@@ -187,6 +235,11 @@ class Legend:
             node.enableNotify(False)
         self.node.addChild(watch)
         self.node.addChild(annotation)
+
+    @property
+    def column(self) -> int:
+        """How many others stand beside it."""
+        return len(self.beside)
 
     def show(self, spec: Spec | None) -> None:
         """Shows a ``Spec``."""
@@ -207,11 +260,7 @@ class Legend:
         width, height = coin.SoViewportRegionElement.get(state).getViewportSizePixels().getValue()
         seen = self._seen(state, width, height)
         key = width, height, theme().dark
-        if key not in self.pictures:
-            while len(self.pictures) >= KEPT:
-                self.pictures.pop(next(iter(self.pictures)))
-            self.pictures[key] = pixels(legend_picture.draw(self.spec, width, height))
-        size, data = self.pictures[key]
+        size, data = self._picture(key)
         if self.drawn != key:
             self.image.image.setValue(coin.SbVec2s(*size), 4 if data else 0, data)
             self.drawn = key
@@ -224,6 +273,14 @@ class Legend:
         at = volume.getPlanePoint(depth, corner)
         model = coin.SoModelMatrixElement.get(state)
         self.shift.translation = model.inverse().multVecMatrix(at)
+
+    def _picture(self, key: tuple[int, int, bool]) -> tuple[tuple[int, int], bytes]:
+        if key not in self.pictures:
+            while len(self.pictures) >= KEPT:
+                self.pictures.pop(next(iter(self.pictures)))
+            drawn = legend_picture.draw(self.spec, *key[:2]) if self.spec else None
+            self.pictures[key] = pixels(drawn)
+        return self.pictures[key]
 
     def _seen(self, state: Any, width: float, height: float) -> Array:
         """(n, 2) pixels at which the part's points are drawn."""
@@ -245,7 +302,8 @@ class Legend:
         border = round(BORDER * width)
         low, high = CROSS * height, (1.0 - CUBE) * height - size[1]
         level = 0.5 * (height - size[1])
-        shift = self.column * (size[0] + border)
+        key = int(width), int(height), theme().dark
+        shift = sum(other._picture(key)[0][0] + border for other in self.beside)
         left, right = border + shift, width - border - size[0] - shift
         aside = min(max(level, low), max(high, border))  # below the cube, above the axes
         choices = [(left, level), (right, aside), (left, border), (left, height - size[1] - border)]

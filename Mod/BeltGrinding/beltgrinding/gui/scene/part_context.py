@@ -19,7 +19,7 @@ EDGE = (0.2, 0.2, 0.22)
 DEFLECTION = 0.001  # chord error, as a share of the part's diagonal
 ANGLE = 0.2  # rad, from facet to facet
 KEPT = 8  # tessellations
-_designs: list[Any] = []  # (what names it, shapes of the objects, design), the last one
+_designs: list[Any] = []  # (what names it, shapes of the objects, design), the last one first
 _rest: list[
     Any
 ] = []  # (shape, numbers of its ground faces, (points, triangles) of the others), the last one
@@ -42,8 +42,18 @@ def design_of(job: DocumentObject) -> tuple[PartShape, list[int]]:
             if all(a.isSame(b) for a, b in zip(before, sources)):
                 return found
     found = job_data.design(job)
-    _designs[:] = [(key, sources, found)]
+    _designs.insert(0, (key, sources, found))
+    del _designs[KEPT:]
     return found
+
+
+def design_key(job: DocumentObject) -> tuple[Any, ...]:
+    """What a drawing of a job's part depends on, to be compared by ``==``."""
+    try:
+        shape, numbers = design_of(job)
+    except InputError:
+        return (None,)
+    return shape.hashCode(), tuple(numbers)
 
 
 def rest_of_part(job: DocumentObject) -> Node:

@@ -11,9 +11,13 @@ from ...engine import InputError
 from ...job.tolerances import colour_scale
 from ...objects import job_data, job_inputs, preferences
 from ...objects.belt_machine import BeltMachine
-from ...objects.deviation import Deviation, bands_of
+from ...objects.deviation import Deviation
+from ...objects.ground_mesh import GroundMesh
 from ...objects.kinds import DocumentObject, ViewObject
+from ...objects.plan import Plan
 from ...objects.robot_path import RobotPath
+from ...objects.shown import bands_of
+from ..common.compat import translate
 from ..common.kinds import Node
 from . import legend
 from .cell_view import CellView
@@ -59,14 +63,14 @@ class Scene:
         self.legend.avoid(points_of_part(job))
         self._show_legend()
         self.cell.root.addChild(self.legend.node)
-        if deviation is None or not deviation.ViewObject.Visibility:
-            self.cell.root.addChild(rest_of_part(job))  # else the deviation draws it
+        self.cell.root.addChild(rest_of_part(job))
         self.hidden: list[tuple[ViewObject, Node, int]] = []  # (view, switch, what it showed)
         for obj in {part for part, _ in job.DesignFaces}:
             self._hide(obj.ViewObject, obj.ViewObject.SwitchNode)
-        if deviation is not None:
-            self._hide(deviation.ViewObject, deviation.ViewObject.SwitchNode)
-            self._hide(deviation.ViewObject, deviation.ViewObject.Proxy.legend)
+        results = (Deviation, GroundMesh, Plan)
+        self.covered = [one for kind in results for one in job_data.children(job, kind)]
+        for one in self.covered:
+            one.ViewObject.Proxy.cover(True)
 
     def _hide(self, view: ViewObject, switch: Node) -> None:
         """Turns a switch of the scene off: the property Visibility would change the document."""
@@ -101,10 +105,11 @@ class Scene:
 
     def _show_legend(self) -> None:
         lower, upper, limit, bands, _ = self.scale
-        self.legend.show(legend.deviation(lower, upper, limit, bands=bands))
+        spec = legend.deviation(lower, upper, limit, bands=bands)
+        self.legend.show(spec._replace(name=translate("BeltGrinding", "Playback")))
 
     def recolour(self, job: DocumentObject) -> None:
-        """Takes the scale over anew. What a changed Deviation has turned on is turned off again."""
+        """Takes the scale over anew. What a changed object has turned on is turned off again."""
         self.scale = self._scale(job)
         self._show_legend()
         self.field.colour_by(DEVIATION, *self.scale)
@@ -125,8 +130,11 @@ class Scene:
                 switch.whichChild = child
                 if child < 0 and switch == view.SwitchNode:  # shown while it was turned off here
                     view.DisplayMode = view.DisplayMode
-                if hasattr(getattr(view, "Proxy", None), "colour"):
-                    view.Proxy.colour()
             except (ReferenceError, RuntimeError):
                 pass  # the object is gone
-        self.hidden = []
+        for one in self.covered:
+            try:
+                one.ViewObject.Proxy.cover(False)
+            except (AttributeError, ReferenceError, RuntimeError):
+                pass  # the object is gone
+        self.hidden, self.covered = [], []

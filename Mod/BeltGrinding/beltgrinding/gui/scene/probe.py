@@ -13,6 +13,7 @@ from ...engine import InputError
 from ...objects import preferences, readout as readings
 from ...objects.kinds import DocumentObject, Field
 from ..common.compat import QtCore, QtGui, translate
+from ..common.figures import figure, length_text
 from ..common.kinds import Json, Node, View3D
 from ..common.messages import error_text
 from . import field_view
@@ -136,7 +137,7 @@ def describe(reading: Json) -> list[str]:
     if reading["coarse"]:
         verdict = translate("BeltGrinding", "{} (coarse)").format(verdict)
     x, y, z = reading["point"]
-    place = f"({x:.3f}, {y:.3f}, {z:.3f}) mm"
+    place = f"({figure(x, '.3f')}, {figure(y, '.3f')}, {figure(z, '.3f')}) mm"
     sample = translate("BeltGrinding", "sample") + f" {reading['sample']}"
     where = ", ".join(part for part in (reading["face"], sample) if part)
     if reading["deviation"] is None:
@@ -159,7 +160,7 @@ def describe(reading: Json) -> list[str]:
 
 def told(value: float, sign: str = "+") -> str:
     """A height in mm, in the unit of the preferences."""
-    return preferences.length_text(value, 1, sign)
+    return length_text(value, 1, sign)
 
 
 def _dot() -> tuple[Node, Node]:

@@ -6,40 +6,20 @@ from typing import TYPE_CHECKING, Any
 
 from pivy import coin
 
-from ...objects.deviation import (
-    DIFFERENCE,
-    MEASURED,
-    ROUGHNESS,
-    TEMPERATURE,
-    UNCERTAINTY,
-    bands_of,
-    roughness_span,
-    temperature_span,
-)
+from ...objects import shown
+from ...objects.job_data import child
 from ...objects.kinds import DocumentObject, ViewObject
-from ..common.compat import QtCore
+from ...objects.plan import Plan
+from ...planning.pictures import INSIDE
+from ..common.redraw import Once
 from ..scene import legend
 from ..scene.crisp_colours import CrispColours
-from ..scene.lay_strokes import lay_strokes
-from ..scene.part_context import rest_of_part
-from .coloured_mesh_view import ColouredMeshView
+from ..scene.lay_strokes import lay_strokes, marks
+from ..scene.part_context import design_key, rest_of_part
+from .coloured_mesh_view import ColouredMeshView, name_of
 
 if TYPE_CHECKING:
     from ..scene.legend_picture import Spec
-
-LEGEND = (
-    "ToleranceLower",
-    "ToleranceUpper",
-    "ColourLimit",
-    "UncertaintyLimit",
-    "GreatestTemperature",
-    "GreatestRoughness",
-    "Bands",
-    "Minimum",
-    "Maximum",
-    "VertexColors",
-    "OutOfDate",
-)
 
 
 class DeviationView(ColouredMeshView):
@@ -70,9 +50,9 @@ class DeviationView(ColouredMeshView):
 
     def attach(self, view: ViewObject) -> None:
         self.crisp = CrispColours(view.RootNode)
-        self.lay = coin.SoSwitch()
+        self.lay, self.rest = coin.SoSwitch(), coin.SoSwitch()
+        self.lay_of, self.rest_of = Once(), Once()
         super().attach(view)
-        self.rest = coin.SoSwitch()
         # Before the mesh's materials and light, which they would inherit, and its style, which hides it where the
         # height field is drawn in its place.
         view.RootNode.insertChild(self.lay, 0)
@@ -88,81 +68,51 @@ class DeviationView(ColouredMeshView):
             self.view.removeProperty("Lit")
         self._lay_property(self.view)
         super().finishRestoring()
-        self.update_rest()
-        QtCore.QTimer.singleShot(0, self._redraw)  # the simulation may come after it
 
-    def updateData(self, obj: DocumentObject, name: str) -> None:
-        if getattr(self, "view", None) is None:
-            return
-        if name == "VertexColors":
-            self.update_rest()
-        if name == "Shown":  # what the object says last
-            self.update_crisp()
-            self.update_lay()
-        if name in LEGEND:
-            self.update_legend()
+    def draw(self) -> None:
+        self.crisp.draw(self.view, self.shown(), INSIDE if self._under_reasons() else 0)
+        self._draw_lay()
+        self._draw_rest()
+        super().draw()
 
-    def onChanged(self, view: ViewObject, name: str) -> None:
-        if getattr(self, "rest", None) is None:
-            return
-        super().onChanged(view, name)
-        if name in ("Visibility", "RestOfPart"):
-            self.update_rest()
-        if name in ("Visibility", "DisplayMode", "Transparency"):
-            self.update_crisp()
-        if name in ("Visibility", "Scratches"):
-            self.update_lay()
+    def _under_reasons(self) -> bool:
+        """Whether a plan shows in its colours why what stays out of tolerance does so: they would mean two things."""
+        job = self.view.Object.getParentGroup()
+        plan = None if job is None else child(job, Plan)
+        proxy: Any = getattr(getattr(plan, "ViewObject", None), "Proxy", None)
+        return hasattr(proxy, "draws") and bool(proxy.draws())
+
+    def own_colours(self) -> bool:
+        return self.shown() and not self.crisp.shown()
 
     def legend_spec(self) -> Spec | None:
         obj = self.view.Object
-        if not (hasattr(obj, "OutOfDate") and hasattr(obj, "Bands")) or obj.ColourLimit.Value <= 0:
+        picture = shown.of(obj)
+        if picture is None or self.crisp.plain:
             return None
-        scale = (obj.ToleranceLower.Value, obj.ToleranceUpper.Value, obj.ColourLimit.Value)
-        if obj.ColourBy == UNCERTAINTY and obj.ExpectedInTolerance > 0.0:
-            return legend.uncertainty(obj.UncertaintyLimit.Value, obj.OutOfDate)
-        scanned = bool(getattr(obj.Simulation, "ScanFigures", ""))
-        if obj.ColourBy in (MEASURED, DIFFERENCE) and scanned:
-            return legend.scan(*scale, obj.OutOfDate, obj.ColourBy == DIFFERENCE)
-        if obj.ColourBy == TEMPERATURE and obj.GreatestTemperature > 0.0:
-            return legend.temperature(obj.StartTemperature, temperature_span(obj), obj.OutOfDate)
-        if obj.ColourBy == ROUGHNESS and obj.GreatestRoughness > 0.0:
-            return legend.roughness(roughness_span(obj), obj.OutOfDate)
-        beyond = obj.Minimum.Value < -scale[2], obj.Maximum.Value > scale[2]
-        return legend.deviation(*scale, obj.OutOfDate, bands_of(obj), beyond)
+        spec = legend.of(picture, name_of(obj), obj.OutOfDate)
+        return spec._replace(marks=(*spec.marks, *marks(self.lay)))
 
-    def update_crisp(self) -> None:
-        """Draws the colours with crisp borders, where that can be done."""
-        if self.view.Visibility:
-            self.crisp.update(self.view)
-        self.colour()
-
-    def update_lay(self) -> None:
-        """Draws the direction of the scratches, where it is known."""
-        self.lay.removeAllChildren()
-        self.lay.whichChild = coin.SO_SWITCH_NONE
-        view = self.view
-        if view.Visibility and getattr(view, "Scratches", False):
-            drawn = lay_strokes(view.Object)
+    def _draw_lay(self) -> None:
+        """The direction of the scratches, where it is known."""
+        obj, simulation = self.view.Object, self.view.Object.Simulation
+        there = self.shown() and not self.crisp.plain and simulation is not None
+        there = there and getattr(self.view, "Scratches", False)
+        # The same result may be judged by other limits, or be stored in another file.
+        of = (obj.Shown, simulation.VerdictData, simulation.HeightField) if there else ()
+        if self.lay_of.needed(*of):
+            self.lay.removeAllChildren()
+            drawn = lay_strokes(obj) if there else None
             if drawn is not None:
                 self.lay.addChild(drawn)
-                self.lay.whichChild = coin.SO_SWITCH_ALL
+            self.lay.whichChild = coin.SO_SWITCH_NONE if drawn is None else coin.SO_SWITCH_ALL
 
-    def colour(self) -> None:
-        """Lets FreeCAD take the vertices' colours over, which takes long, where it draws them."""
-        if not self.crisp.shown():
-            super().colour()
-
-    def _redraw(self) -> None:
-        try:
-            self.update_crisp()
-            self.update_lay()
-        except (ReferenceError, RuntimeError):
-            pass  # the document is closed again
-
-    def update_rest(self) -> None:
-        """Draws the faces that are not ground; what is cut below them would else be hidden."""
-        self.rest.removeAllChildren()
+    def _draw_rest(self) -> None:
+        """The faces that are not ground; what is cut below them would else be hidden."""
         job = self.view.Object.getParentGroup()
-        if job is not None and self.view.Visibility and self.view.RestOfPart:
-            self.rest.addChild(rest_of_part(job))
-            self.rest.whichChild = -3
+        there = job is not None and self.shown() and getattr(self.view, "RestOfPart", False)
+        if self.rest_of.needed(*(design_key(job) if there else ())):
+            self.rest.removeAllChildren()
+            if there:
+                self.rest.addChild(rest_of_part(job))
+            self.rest.whichChild = coin.SO_SWITCH_ALL if there else coin.SO_SWITCH_NONE

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 from pivy import coin
 
-from ...objects.kinds import DocumentObject, ViewObject
+from ...objects.kinds import ViewObject
 from ..common.compat import translate
-from ..common.icons import icon, stale_icon
+from ..common.redraw import Once
 from ..scene import legend
-from ..scene.part_context import edges_of_part
-from .coloured_mesh_view import ColouredMeshView
+from ..scene.part_context import design_key, edges_of_part
+from .coloured_mesh_view import ColouredMeshView, name_of
 
 if TYPE_CHECKING:
     from ..scene.legend_picture import Spec
@@ -24,50 +24,31 @@ class GroundMeshView(ColouredMeshView):
     COMMANDS = ("BeltGrinding_GroundMesh", "BeltGrinding_Simulate")
 
     def attach(self, view: ViewObject) -> None:
+        self.edges, self.edges_of = coin.SoSwitch(), Once()
         super().attach(view)
-        self.edges = coin.SoSwitch()
         view.RootNode.insertChild(self.edges, 0)  # before the mesh's colours
 
-    def finishRestoring(self) -> None:
-        super().finishRestoring()
-        self.update_edges()
+    def draw(self) -> None:
+        super().draw()
+        self._draw_edges()
 
-    def onChanged(self, view: ViewObject, name: str) -> None:
-        if getattr(self, "edges", None) is None:
-            return
-        super().onChanged(view, name)
-        if name == "Visibility":
-            self.update_edges()
-
-    def update_edges(self) -> None:
-        """Draws the part's edges: what is not ground is of one grey."""
-        self.edges.removeAllChildren()
+    def _draw_edges(self) -> None:
+        """The part's edges: what is not ground is of one grey."""
         job = self.view.Object.getParentGroup()
-        if job is not None and self.view.Visibility:
-            self.edges.addChild(edges_of_part(job))
-            self.edges.whichChild = coin.SO_SWITCH_ALL
-
-    def getIcon(self) -> str:
-        stale = getattr(self, "view", None) is not None and self.view.Object.OutOfDate
-        return stale_icon(self.ICON) if stale else icon(self.ICON)
-
-    def updateData(self, obj: DocumentObject, name: str) -> None:
-        if getattr(self, "view", None) is None:
-            return
-        if name == "VertexColors":
-            self.colour()
-            self.update_edges()
-        if name == "OutOfDate":
-            self.view.signalChangeIcon()
-        if name in ("VertexColors", "OutOfDate"):
-            self.update_legend()
+        there = job is not None and self.shown()
+        if self.edges_of.needed(*(design_key(job) if there else ())):
+            self.edges.removeAllChildren()
+            if there:
+                self.edges.addChild(edges_of_part(job))
+            self.edges.whichChild = coin.SO_SWITCH_ALL if there else coin.SO_SWITCH_NONE
 
     def legend_spec(self) -> Spec | None:
         obj = self.view.Object
         if getattr(obj, "ColourLimit", None) is None or obj.ColourLimit.Value <= 0:
             return None
         scale = (obj.ToleranceLower.Value, obj.ToleranceUpper.Value, obj.ColourLimit.Value)
-        return legend.deviation(*scale, obj.OutOfDate)
+        spec = legend.deviation(*scale, obj.OutOfDate, standard=True)
+        return spec._replace(name=name_of(obj))
 
     def doubleClicked(self, view: ViewObject) -> bool:
         from ...objects import ground_mesh

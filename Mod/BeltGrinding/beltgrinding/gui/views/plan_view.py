@@ -6,10 +6,16 @@ import numpy as np
 from pivy import coin
 
 from ...objects.kinds import DocumentObject, ViewObject
+from ...planning import reasons
 from ...planning.pictures import COLOURS
 from ..common.compat import translate
-from ..common.icons import icon, stale_icon
+from ..common.plan_runner import words
+from ..common.redraw import Once
 from ..scene import left_out
+from ..scene.legend import Legend
+from ..scene.legend_picture import Mark, Spec
+from ..scene.part_context import points_of_part
+from .coloured_mesh_view import name_of
 from .view import View
 
 RGB = {
@@ -25,8 +31,9 @@ class PlanView(View):
     COMMANDS = ("BeltGrinding_Simulate", "BeltGrinding_Deviation")
 
     def attach(self, view: ViewObject) -> None:
+        self.left, self.left_of = coin.SoSwitch(), Once()
+        self.drawn = Legend()
         super().attach(view)
-        self.left = coin.SoSwitch()
         view.addDisplayMode(self.left, "Left")
 
     def getDisplayModes(self, view: ViewObject) -> list[str]:
@@ -35,40 +42,39 @@ class PlanView(View):
     def getDefaultDisplayMode(self) -> str:
         return "Left"
 
-    def getIcon(self) -> str:
-        stale = getattr(self, "view", None) is not None and getattr(
-            self.view.Object, "OutOfDate", False
-        )
-        return stale_icon(self.ICON) if stale else icon(self.ICON)
-
-    def finishRestoring(self) -> None:
-        self.draw()
-
-    def updateData(self, obj: DocumentObject, name: str) -> None:
-        if getattr(self, "view", None) is None:
-            return
-        if name == "OutOfDate":
-            self.view.signalChangeIcon()
-        if name in ("OutOfDate", "Fingerprint", "Applied"):
-            self.draw()
-
-    def onChanged(self, view: ViewObject, name: str) -> None:
-        if name == "Visibility" and getattr(self, "left", None) is not None:
-            self.draw()
+    def draws(self) -> bool:
+        """Whether the places are drawn: none of a plan that is out of date, or applied; then the deviation shows what
+        is left, in the colours of its own legend."""
+        obj = self.view.Object
+        gone = getattr(obj, "OutOfDate", True) or obj.Applied or not obj.LeftStates
+        return self.shown() and bool(obj.Fingerprint) and not gone
 
     def draw(self) -> None:
-        """Draws the places as they are; none of a plan that is out of date, or applied: then the deviation shows what is
-        left, in the colours of its own legend."""
-        obj = self.view.Object
-        self.left.whichChild = coin.SO_SWITCH_NONE
-        self.left.removeAllChildren()
-        gone = obj.OutOfDate or obj.Applied or not self.view.Visibility
-        if not getattr(obj, "Fingerprint", "") or gone:
-            return
-        corners = np.array(obj.LeftTriangles, dtype=int).reshape(-1, 3)
-        points = np.array([tuple(point) for point in obj.LeftPoints]).reshape(-1, 3)
-        self.left.addChild(left_out.left_out(points, corners, np.array(obj.LeftStates), RGB))
-        self.left.whichChild = coin.SO_SWITCH_ALL
+        super().draw()
+        obj, there = self.view.Object, self.draws()
+        if self.left_of.needed(*((obj.Fingerprint, len(obj.LeftStates)) if there else ())):
+            self.left.removeAllChildren()
+            if there:
+                corners = np.array(obj.LeftTriangles, dtype=int).reshape(-1, 3)
+                points = np.array([tuple(point) for point in obj.LeftPoints]).reshape(-1, 3)
+                states = np.array(obj.LeftStates)
+                self.left.addChild(left_out.left_out(points, corners, states, RGB))
+                self.left.addChild(self.drawn.node)
+            self.left.whichChild = coin.SO_SWITCH_ALL if there else coin.SO_SWITCH_NONE
+        if there:
+            self.drawn.show(self._spec())
+            self.drawn.avoid(points_of_part(obj.getParentGroup()))
+
+    def legends(self) -> list[Legend]:
+        return [self.drawn] if self.draws() else []
+
+    def _spec(self) -> Spec:
+        """The legend of the reasons that are drawn, the most frequent first."""
+        obj, said = self.view.Object, words()
+        states, counts = np.unique(np.array(obj.LeftStates, dtype=int), return_counts=True)
+        order = [int(state) for state in states[np.argsort(-counts)] if int(state) in COLOURS]
+        marks = tuple(Mark(COLOURS[state], said[reasons.WORDS[state]]) for state in order)
+        return Spec([], {}, said["why"], ("", ""), (False, False), "", name_of(obj), marks)
 
     def doubleClicked(self, view: ViewObject) -> bool:
         from ..panels.plan_panel import show

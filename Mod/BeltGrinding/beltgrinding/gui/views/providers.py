@@ -11,17 +11,19 @@ from pivy import coin
 from ...engine import InputError
 from ...objects.deviation import Deviation
 from ...objects.ground_mesh import GroundMesh
-from ...objects.job_data import child, children
+from ...objects.job_data import children
 from ...objects.kinds import DocumentObject, ViewObject
 from ...objects.robot_path import load_program
 from ..common.compat import translate
-from ..common.icons import icon, stale_icon, qicon
+from ..common.icons import qicon
 from ..common.kinds import Menu
+from ..common.redraw import Once
 from ..scene import left_out, path_arrows, stock_shell
-from .coloured_mesh_view import frame_selected
+from ..scene.legend import Legend
+from ..scene.part_context import design_key, points_of_part
+from .coloured_mesh_view import frame_selected, name_of
 from .deviation_view import DeviationView
 from .ground_mesh_view import GroundMeshView
-from .showing import show_stock
 from .plan_view import PlanView
 from .section_view import SectionView
 from .view import View
@@ -44,6 +46,13 @@ __all__ = [
 
 
 LINE_WIDTH = 2  # pixels of a path
+DRAWN_OF = ("Path", "Poses", "LeftStates", "LeftPoints", "LeftTriangles")  # of a path
+
+
+def _sides_key(job: DocumentObject) -> tuple[Any, ...]:
+    """What the side depends on that a job's stock lies on."""
+    flipped = [(obj.Name, tuple(subs)) for obj, subs in job.FlipFaces]
+    return (*design_key(job), flipped, job.FlipNormals)
 
 
 class Undrawn(View):
@@ -76,10 +85,6 @@ class JobView(View):
         "BeltGrinding_ImportResult",
     )
 
-    def updateData(self, obj: DocumentObject, name: str) -> None:
-        if name in ("DesignFaces", "FlipFaces", "FlipNormals", "Group"):
-            show_stock(obj)
-
     def panel(self, obj: DocumentObject) -> Any:
         from ..panels.job_panel import JobPanel
 
@@ -92,8 +97,8 @@ class StockView(View):
     ICON = "BeltGrinding_Stock"
 
     def attach(self, view: ViewObject) -> None:
+        self.shell, self.shell_of = coin.SoSwitch(), Once()
         super().attach(view)
-        self.shell = coin.SoSwitch()
         view.addDisplayMode(self.shell, "Shell")
 
     def getDisplayModes(self, view: ViewObject) -> list[str]:
@@ -102,28 +107,18 @@ class StockView(View):
     def getDefaultDisplayMode(self) -> str:
         return "Shell"
 
-    def finishRestoring(self) -> None:
-        self.update_shell()
-
-    def updateData(self, obj: DocumentObject, name: str) -> None:
-        if name in ("Kind", "Allowance") and getattr(self, "view", None) is not None:
-            self.update_shell()
-
-    def onChanged(self, view: ViewObject, name: str) -> None:
-        if name == "Visibility" and getattr(self, "shell", None) is not None:
-            self.update_shell()
-
-    def update_shell(self) -> None:
-        """Draws the stock as it is now; nothing beside a result that is shown."""
+    def draw(self) -> None:
+        """Nothing beside a result that is shown."""
+        super().draw()
         obj, job = self.view.Object, self.view.Object.getParentGroup()
-        self.shell.whichChild = coin.SO_SWITCH_NONE
-        self.shell.removeAllChildren()
-        if job is None or not self.view.Visibility or getattr(obj, "Kind", "") != "allowance":
-            return
-        results = [*children(job, Deviation), *children(job, GroundMesh)]
-        if not any(result.ViewObject.Visibility for result in results):
-            self.shell.addChild(stock_shell.shell(job, obj.Allowance.Value))
-            self.shell.whichChild = coin.SO_SWITCH_ALL
+        there = job is not None and self.shown() and getattr(obj, "Kind", "") == "allowance"
+        results = [*children(job, Deviation), *children(job, GroundMesh)] if there else []
+        there = there and not any(result.ViewObject.Visibility for result in results)
+        if self.shell_of.needed(*((obj.Allowance.Value, *_sides_key(job)) if there else ())):
+            self.shell.removeAllChildren()
+            if there:
+                self.shell.addChild(stock_shell.shell(job, obj.Allowance.Value))
+            self.shell.whichChild = coin.SO_SWITCH_ALL if there else coin.SO_SWITCH_NONE
 
     def panel(self, obj: DocumentObject) -> Any:
         from ..panels.stock_panel import StockPanel
@@ -164,36 +159,37 @@ class RobotPathView(View):
     )
 
     def attach(self, view: ViewObject) -> None:
-        super().attach(view)
-        self.arrows = coin.SoSwitch()
+        self.arrows, self.arrows_of, self.start_of = coin.SoSwitch(), Once(), Once()
+        self.changes = 0
         view.RootNode.addChild(self.arrows)
+        super().attach(view)
         frame_selected(view)
         if view.LineWidth == 1:  # FreeCAD's default
             view.LineWidth = LINE_WIDTH
-        self.start(view.Object)
 
     def finishRestoring(self) -> None:
         frame_selected(self.view)
-        self.draw_arrows()
+        super().finishRestoring()
 
     def updateData(self, obj: DocumentObject, name: str) -> None:
-        if name == "Path" and getattr(self, "view", None) is not None:
-            self.start(obj)
-            self.draw_arrows()
+        if name in DRAWN_OF:  # lists too long to be compared
+            self.changes = getattr(self, "changes", 0) + 1
+        super().updateData(obj, name)
 
-    def onChanged(self, view: ViewObject, name: str) -> None:
-        # While a document is opened, a path of an earlier version has not all its properties yet.
-        drawn = getattr(self, "arrows", None) is not None and not FreeCAD.isRestoring()
-        if drawn and name in ("Visibility", "NormalColor"):
-            self.draw_arrows()
+    def draw(self) -> None:
+        super().draw()
+        self.start(self.view.Object)
+        self._draw_arrows()
 
-    def draw_arrows(self) -> None:
-        """Draws the arrows of the path as it is."""
-        view = self.view
+    def _draw_arrows(self) -> None:
+        view, obj = self.view, self.view.Object
+        ready = getattr(obj, "Proxy", None) is not None and bool(obj.Path.Size)
+        there = self.shown() and ready
+        if not self.arrows_of.needed(*((view.NormalColor, *self._path_key()) if there else ())):
+            return
         self.arrows.whichChild = coin.SO_SWITCH_NONE
         self.arrows.removeAllChildren()
-        obj = view.Object
-        if not view.Visibility or getattr(obj, "Proxy", None) is None or not obj.Path.Size:
+        if not there:
             return
         try:
             points = obj.Proxy.contacts(obj)
@@ -203,9 +199,20 @@ class RobotPathView(View):
         self.arrows.addChild(node)
         self.arrows.whichChild = coin.SO_SWITCH_ALL
 
+    def _path_key(self) -> tuple[Any, ...]:
+        """What the drawing of a path depends on."""
+        obj = self.view.Object
+        machine = obj.Machine
+        cell = machine.Proxy.cell(machine) if machine is not None else {}
+        return self.changes, repr(cell)
+
     def start(self, obj: DocumentObject) -> None:
         """Tells the view where the path begins."""
-        if obj.Path.Size and hasattr(self.view, "StartPosition"):
+        if (
+            obj.Path.Size
+            and hasattr(self.view, "StartPosition")
+            and self.start_of.needed(self.changes)
+        ):
             self.view.StartPosition = obj.Path.Commands[0].Placement.Base
 
     def panel(self, obj: DocumentObject) -> Any:
@@ -234,26 +241,30 @@ class RasterPathView(RobotPathView):
     ICON = "BeltGrinding_RasterPath"
 
     def attach(self, view: ViewObject) -> None:
-        self.left = coin.SoSwitch()
+        self.left, self.left_of, self.drawn = coin.SoSwitch(), Once(), Legend()
         view.RootNode.addChild(self.left)
         super().attach(view)
 
-    def draw_arrows(self) -> None:
-        super().draw_arrows()
-        self.left.whichChild = coin.SO_SWITCH_NONE
-        self.left.removeAllChildren()
-        obj = self.view.Object
-        if not self.view.Visibility or not getattr(obj, "LeftTriangles", None):
-            return
-        corners = np.array(obj.LeftTriangles, dtype=int).reshape(-1, 3)
-        points = np.array([tuple(point) for point in obj.LeftPoints])
-        self.left.addChild(left_out.left_out(points, corners, np.array(obj.LeftStates)))
-        self.left.whichChild = coin.SO_SWITCH_ALL
+    def draw(self) -> None:
+        super().draw()
+        obj, there = self.view.Object, self._leaves_out()
+        if self.left_of.needed(*((self.changes,) if there else ())):
+            self.left.removeAllChildren()
+            if there:
+                corners = np.array(obj.LeftTriangles, dtype=int).reshape(-1, 3)
+                points = np.array([tuple(point) for point in obj.LeftPoints])
+                self.left.addChild(left_out.left_out(points, corners, np.array(obj.LeftStates)))
+                self.left.addChild(self.drawn.node)
+            self.left.whichChild = coin.SO_SWITCH_ALL if there else coin.SO_SWITCH_NONE
+        if there:
+            self.drawn.show(left_out.spec(name_of(obj), np.array(obj.LeftStates)))
+            self.drawn.avoid(points_of_part(obj.getParentGroup()))
 
-    def updateData(self, obj: DocumentObject, name: str) -> None:
-        super().updateData(obj, name)
-        if name == "LeftStates" and getattr(self, "view", None) is not None:
-            self.draw_arrows()
+    def _leaves_out(self) -> bool:
+        return self.shown() and bool(getattr(self.view.Object, "LeftTriangles", None))
+
+    def legends(self) -> list[Legend]:
+        return [self.drawn] if self._leaves_out() else []
 
     def panel(self, obj: DocumentObject) -> Any:
         from ..panels.raster_panel import RasterPanel
@@ -266,14 +277,6 @@ class VerdictView(Undrawn):
 
     ICON = "BeltGrinding_Verdict"
     COMMANDS = ("BeltGrinding_Zones", "BeltGrinding_Deviation")
-
-    def getIcon(self) -> str:
-        stale = getattr(self, "view", None) is not None and self.view.Object.OutOfDate
-        return stale_icon(self.ICON) if stale else icon(self.ICON)
-
-    def updateData(self, obj: DocumentObject, name: str) -> None:
-        if name == "OutOfDate" and getattr(self, "view", None) is not None:
-            self.view.signalChangeIcon()
 
     def doubleClicked(self, view: ViewObject) -> bool:
         from ..docks.verdict_dock import VerdictDock
@@ -294,14 +297,6 @@ class SimulationView(Undrawn):
     ICON = "BeltGrinding_Simulate"
     COMMANDS = ("BeltGrinding_Simulate", "BeltGrinding_Deviation", "BeltGrinding_ImportResult")
 
-    def getIcon(self) -> str:
-        stale = getattr(self, "view", None) is not None and self.view.Object.OutOfDate
-        return stale_icon(self.ICON) if stale else icon(self.ICON)
-
-    def updateData(self, obj: DocumentObject, name: str) -> None:
-        if name == "OutOfDate" and getattr(self, "view", None) is not None:
-            self.view.signalChangeIcon()
-
     def doubleClicked(self, view: ViewObject) -> bool:
         from ..panels.simulation_panel import show_result
 
@@ -317,16 +312,6 @@ class StudyView(Undrawn):
 
     ICON = "BeltGrinding_Study"
     COMMANDS = ("BeltGrinding_Study", "BeltGrinding_Simulate")
-
-    def getIcon(self) -> str:
-        stale = getattr(self, "view", None) is not None and getattr(
-            self.view.Object, "OutOfDate", False
-        )
-        return stale_icon(self.ICON) if stale else icon(self.ICON)
-
-    def updateData(self, obj: DocumentObject, name: str) -> None:
-        if name == "OutOfDate" and getattr(self, "view", None) is not None:
-            self.view.signalChangeIcon()
 
     def doubleClicked(self, view: ViewObject) -> bool:
         from ..docks.study_dock import show

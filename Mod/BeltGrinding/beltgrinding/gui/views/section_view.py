@@ -8,6 +8,7 @@ from ...objects.kinds import DocumentObject, ViewObject
 from ..common.compat import translate
 from ..common.icons import qicon
 from ..common.kinds import Menu
+from ..common.redraw import Once
 from ..scene.shapes3d import separator, unpickable
 from .view import View
 
@@ -22,6 +23,7 @@ class SectionView(View):
     COMMANDS = ("BeltGrinding_Section", "BeltGrinding_Simulate")
 
     def attach(self, view: ViewObject) -> None:
+        self.line_of = Once()
         super().attach(view)
         style, light, colour = coin.SoDrawStyle(), coin.SoLightModel(), coin.SoBaseColor()
         style.lineWidth = WIDTH
@@ -32,7 +34,6 @@ class SectionView(View):
         self.points, self.lines = coin.SoCoordinate3(), coin.SoLineSet()
         root = separator(unpickable(), light, colour, style, depth, self.points, self.lines)
         view.addDisplayMode(root, "Line")
-        self.draw(view.Object)
 
     def getDisplayModes(self, view: ViewObject) -> list[str]:
         return ["Line"]
@@ -40,15 +41,14 @@ class SectionView(View):
     def getDefaultDisplayMode(self) -> str:
         return "Line"
 
-    def updateData(self, obj: DocumentObject, name: str) -> None:
-        if name == "Line" and getattr(self, "view", None) is not None:
-            self.draw(obj)
-
-    def draw(self, obj: DocumentObject) -> None:
-        """Takes the object's line over."""
+    def draw(self) -> None:
+        super().draw()
+        obj = self.view.Object
         if not hasattr(obj, "LineCounts"):
             return
         points, counts = [tuple(point) for point in obj.Line], obj.LineCounts
+        if not self.line_of.needed(points, counts):
+            return
         self.lines.numVertices.deleteValues(0)
         self.points.point.deleteValues(0)
         if points:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import FreeCADGui as Gui
 
@@ -11,9 +11,17 @@ from ...objects.kinds import DocumentObject, ViewObject
 from ...objects.proxy import Stateless
 from ..common import command_registry
 from ..common.compat import translate
-from ..common.icons import icon, qicon
+from ..common.icons import icon, qicon, stale_icon
 from ..common.kinds import Menu
+from ..common.redraw import Once, drawing
 from ..panels.panel import edit
+
+if TYPE_CHECKING:
+    from ..scene.legend import Legend
+
+
+# Of FreeCAD's views, set to draw what the document holds: it is not changed by that.
+DRAWN_BY = {"Coloring", "SelectionStyle", "ShapeAppearance", "StartPosition"}
 
 
 def add_commands(menu: Menu, names: Iterable[str]) -> None:
@@ -36,10 +44,51 @@ class View(Stateless):
         view.Proxy = self
 
     def attach(self, view: ViewObject) -> None:
+        self.picture, self.covered = Once(), False
         self.view = view
+        for name in DRAWN_BY.intersection(view.PropertiesList):
+            view.setPropertyStatus(name, "NoModify")
+        drawing.ask(view.Object.Document)
+
+    def finishRestoring(self) -> None:
+        drawing.ask(self.view.Object.Document)
+
+    def updateData(self, obj: DocumentObject, name: str) -> None:
+        if getattr(self, "view", None) is not None:
+            drawing.ask(obj.Document)
+
+    def onChanged(self, view: ViewObject, name: str) -> None:
+        if getattr(self, "view", None) is None:
+            return
+        if name == "Visibility":  # FreeCAD hides what is its own at once
+            drawing.now(view.Object.Document)
+        else:
+            drawing.ask(view.Object.Document)
+
+    def draw(self) -> None:
+        """Draws the object as properties say: its own, its view's, and those of others. Called whenever one of them may
+        have changed, so what is drawn so already stays (``Once``)."""
+        if self.picture.needed(self.getIcon()):
+            self.view.signalChangeIcon()
+
+    def legends(self) -> list[Legend]:
+        """The legends that are shown now."""
+        return []
+
+    def shown(self) -> bool:
+        """Whether the object is to be seen; ``covered``: playback is, in its place."""
+        return bool(self.view.Visibility) and not self.covered
+
+    def cover(self, covered: bool) -> None:
+        """Draws nothing in the 3D views, or again; no property says so."""
+        self.covered = covered
+        drawing.now(self.view.Object.Document)
 
     def getIcon(self) -> str:
-        return icon(self.ICON)
+        """The object's; a marked one where its result is out of date."""
+        view = getattr(self, "view", None)
+        stale = view is not None and getattr(view.Object, "OutOfDate", False)
+        return stale_icon(self.ICON) if stale else icon(self.ICON)
 
     def panel(self, obj: DocumentObject) -> Any:
         raise NotImplementedError

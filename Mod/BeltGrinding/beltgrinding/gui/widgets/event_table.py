@@ -9,6 +9,7 @@ from ...cell.events import SEVERITIES
 from ...objects.kinds import Event
 from ..common import event_texts
 from ..common.compat import QtCore, QtGui, translate
+from ..common.figures import figure
 from ..common.event_texts import COLOURS
 from ..common.kinds import FaceName, Icon, Layout, QtEvent, TableItem, Widget
 from .steady import steady
@@ -137,7 +138,7 @@ class EventTable(QtGui.QWidget):
             where = self.face_name(event["face"]) if event["face"] else event_texts.bodies(event)
             short = where.rpartition(".")[2] if event["face"] else where  # Face1 of Part.Face1
             message = event_texts.message(event)
-            cells = (f"{event['time']:.2f}", event_texts.title(event), short, line)
+            cells = (figure(event["time"], ".2f"), event_texts.title(event), short, line)
             for k, text in enumerate(cells):
                 item = QtGui.QTableWidgetItem(text)
                 item.setToolTip(f"{where}: {message}" if where else message)
@@ -203,7 +204,7 @@ def details(event: Event) -> str:
         when += translate("BeltGrinding", ", line {}").format(event["line"])
     if event["point"]:
         x, y, z = event["point"]
-        when += f"; ({x:.2f}, {y:.2f}, {z:.2f}) mm"
+        when += f"; ({figure(x, '.2f')}, {figure(y, '.2f')}, {figure(z, '.2f')}) mm"
     return "<br>".join([*lines, f"<span style='color:gray'>{_escape(when)}</span>"])
 
 

@@ -12,6 +12,7 @@ from ...geometry import free_run
 from ...objects import belt_machine as machines
 from ...objects.kinds import DocumentObject
 from ..common.compat import QtCore, QtGui, translate
+from ..common.figures import figure
 from ..common.kinds import Array, Colour, Json, Painter, Polygon, QtEvent, QtPoint
 from ..common.theme import readable, theme
 from ..scene import belt_shapes
@@ -63,10 +64,10 @@ class MachineDrawing(QtGui.QWidget):
         top = QtCore.QPointF(middle.x(), middle.y() - outer)
         self._work(painter, top)
         self._travel(painter, QtCore.QPointF(middle.x() + 0.62 * outer + 14, top.y() + 6))
-        lines = [f"R {radius:g} mm", f"{self.machine.WheelWidth.Value:g} mm"]
+        lines = [f"R {figure(radius, 'g')} mm", f"{figure(self.machine.WheelWidth.Value, 'g')} mm"]
         lines[1] = translate("BeltGrinding", "width {}").format(lines[1])
         if rim:
-            lines.append(translate("BeltGrinding", "rim {} mm").format(f"{rim:g}"))
+            lines.append(translate("BeltGrinding", "rim {} mm").format(figure(rim, "g")))
         self._texts(painter, middle.x() + outer + 8, middle.y() - 14, lines)
 
     def _runs(self, painter: Painter, middle: QtPoint, radius: float, scale: float) -> None:
@@ -162,8 +163,10 @@ class MachineDrawing(QtGui.QWidget):
     def _say(self, painter: Painter, low: float) -> None:
         """The belt's sizes, below."""
         machine = self.machine
-        wide = translate("BeltGrinding", "width {}").format(f"{machine.RunWidth.Value:g} mm")
-        said = f"{machine.RunLength.Value:g} mm · {machine.RunTension:g} N/mm\n{wide}"
+        wide = translate("BeltGrinding", "width {}").format(
+            f"{figure(machine.RunWidth.Value, 'g')} mm"
+        )
+        said = f"{figure(machine.RunLength.Value, 'g')} mm · {figure(machine.RunTension, 'g')} N/mm\n{wide}"
         painter.setPen(QtGui.QColor(theme().text))
         box = QtCore.QRectF(EDGE, low, self.width() - 2 * EDGE, self.height() - low)
         painter.drawText(box, QtCore.Qt.AlignHCenter | QtCore.Qt.AlignTop, said)

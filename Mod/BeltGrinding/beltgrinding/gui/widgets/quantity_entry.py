@@ -17,6 +17,7 @@ from ...objects.kinds import DocumentObject
 from ...objects.properties import unit_of
 from ..common.compat import QtCore, QtGui, translate
 from ..common.kinds import QtEvent
+from .steady import steady
 
 DIGITS = 7
 SIZES = {  # in FreeCAD's own units: mm, mN, kPa, mm/s
@@ -74,6 +75,7 @@ class QuantityEntry(QtGui.QLineEdit):
     def __init__(self, value: float, unit: Any, symbol: str) -> None:
         """value: in FreeCAD's unit; unit: FreeCAD's Unit; symbol: one of SIZES."""
         super().__init__()
+        steady(self)
         self.unit, self.symbol = unit, symbol
         self.raw = float(value)
         self.bound: tuple[
@@ -185,9 +187,7 @@ class QuantityEntry(QtGui.QLineEdit):
         self._step(steps)
 
     def wheelEvent(self, event: QtEvent) -> None:
-        """Turns the value where one has clicked into it; else what lies below scrolls."""
-        if not self.hasFocus():
-            return event.ignore()
+        """Turns the value; only where one has clicked into it (``steady``)."""
         self._step(1 if event.angleDelta().y() > 0 else -1)
         event.accept()
 

@@ -110,7 +110,12 @@ def _complete(job: dict[str, Any], folder: Path | str) -> None:
         )
     more = job_bodies.OF_KIND.get(machine.kind(job["belt_machine"]), ())
     job_bodies.validate(job["cell"]["bodies"], more)
-    robots.validate(job["robot"])
+    robot = job["robot"]
+    if robot["model"]["urdf"]:
+        robot["model"]["urdf"] = absolute(folder, robot["model"]["urdf"])
+    robot["packages"] = [absolute(folder, one) for one in robot["packages"]]
+    robots.validate(robot)
+    _check_external(job)
     lower, upper = job["inspection"]["tolerance_mm"]
     if lower > upper:
         raise InputError(
@@ -119,6 +124,17 @@ def _complete(job: dict[str, Any], folder: Path | str) -> None:
             key="inspection.tolerance_mm",
         )
     check_zones(job["inspection"]["zones"], job["design"]["faces"], "finish" in job)
+
+
+def _check_external(job: Json) -> None:
+    """Raises InputError for a positioner of the part that the robot holds."""
+    carried = any(one["carries"] == "part" for one in job["robot"]["external_axes"])
+    if carried and job["cell"]["holding"] == "part_in_hand":
+        raise InputError(
+            "job.external_of_held",
+            "{key}: no external axis carries the part that the robot holds; it carries the robot",
+            key="robot.external_axes",
+        )
 
 
 def check_finish(finish: Json | None) -> None:

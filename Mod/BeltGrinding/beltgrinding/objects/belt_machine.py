@@ -109,6 +109,8 @@ KEYS = (
     Key("Robot", "String", "Robot", "robot.preset"),
     Key("Controller", "String", "Robot", "robot.controller"),
     Key("RobotModel", "JSON", "Robot", "robot.model"),
+    Key("RobotPackages", "JSON", "Robot", "robot.packages"),
+    Key("ExternalAxes", "JSON", "Robot", "robot.external_axes"),
     Key("RobotProgram", "JSON", "Robot", "robot.program"),
     Key("StartJoints", "JSON", "Robot", "robot.start_joints_deg"),
     Key("LinkRadii", "JSON", "Robot", "robot.link_radii_mm"),

@@ -25,7 +25,7 @@ from ..programs.registry import read_program
 from ..programs.writers.frames import words_of_cell
 from ..programs.writers.writer import write_program
 from . import whole as wholes
-from .whole import Move, Whole
+from .moves import Move, Whole
 
 if TYPE_CHECKING:
     from ..programs.writers.frames import Given
@@ -91,7 +91,7 @@ def _motion(move: Move, arm: core.RobotArm, words: dict[str, str], stops: bool) 
     return Motion(
         move.kind, move.frame, move.line, "", move.feed if path else None,
         move.force if path and move.force >= 0 else None, words["tool"], words["base"], zone_mm=zone,
-        joints_deg=joints, posture=posture, note=move.note,
+        joints_deg=joints, posture=posture, note=move.note, external=move.external,
     )  # fmt: skip
 
 

@@ -133,15 +133,13 @@ def _joint_speed(percent: float | None) -> list[str]:
 
 def _target(step: Step, pose: str) -> str:
     """Joint angles where a PTP has them; else the pose, with status and turn where the posture is known."""
-    if step.joints is None:
-        return pose
-    if step.kind == "PTP":
-        angles = (f"A{k} {decimal(one, JOINT_DIGITS)}" for k, one in enumerate(step.joints, 1))
-        return "{" + ",".join(angles) + "}"
-    if step.posture is None:
-        return pose
-    status, turn = status_and_turn(step.posture, step.joints)
-    return f"{pose[:-1]},S {status},T {turn}}}"
+    parts = [pose[1:-1]]
+    if step.joints is not None and step.kind == "PTP":
+        parts = [f"A{k} {decimal(one, JOINT_DIGITS)}" for k, one in enumerate(step.joints, 1)]
+    elif step.joints is not None and step.posture is not None:
+        parts += ["S {},T {}".format(*status_and_turn(step.posture, step.joints))]
+    parts += [f"E{k} {decimal(one, JOINT_DIGITS)}" for k, one in enumerate(step.external, 1)]
+    return "{" + ",".join(parts) + "}"
 
 
 def status_and_turn(posture: Posture, joints: Joints) -> tuple[int, int]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ...base.frames import to_quaternions
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
 MOST = 32  # characters of an identifier
 FORCE_DIGITS = 4  # of N along an axis
-EXTERNAL = "[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]"
+EXTERNAL, NO_AXIS = 6, "9E+09"  # external axes of a target; the value of one that is not there
 JOINT_DIGITS = 6  # of degrees
 NAME = re.compile(r"[A-Za-z]\w{0,31}", re.ASCII)
 TYPES = {"tool": "tooldata", "base": "wobjdata"}
@@ -60,11 +61,12 @@ def text(sheet: Sheet) -> bytes:
     if any(step.kind == "SPL" for step in sheet.steps):
         lines.append("    ! RAPID has no splines: their points are joined by lines.")
     places = [
-        f"{_target(p, q, sheet.digits)[:-1]},{configuration},{EXTERNAL}]"
-        for p, q, configuration in zip(
+        f"{_target(p, q, sheet.digits)[:-1]},{configuration},{external}]"
+        for p, q, configuration, external in zip(
             rounded(sheet.positions, sheet.digits.mm).tolist(),
             rounded_quaternions(sheet.quaternions, sheet.digits.unit).tolist(),
             _configurations(sheet),
+            _externals(sheet),
         )
     ]
     blend = _blend(sheet.blend_mm)
@@ -90,7 +92,7 @@ def text(sheet: Sheet) -> bytes:
             rounds = "fine"
         move, force = MOVES[step.kind], ""
         if step.kind == "PTP" and step.joints is not None:
-            move, target = "MoveAbsJ", _joint_target(step.joints)
+            move, target = "MoveAbsJ", _joint_target(step.joints, step.external)
         if pressed[k] == "start":
             move, force = "FCPress1LStart", _first_press(
                 known(device), step, sheet.frames[step.pose]
@@ -109,9 +111,25 @@ def text(sheet: Sheet) -> bytes:
     return "\r\n".join(lines).encode("ascii")
 
 
-def _joint_target(joints: Joints) -> str:
+def _joint_target(joints: Joints, external: Sequence[float]) -> str:
     angles = ",".join(decimal(one, JOINT_DIGITS) for one in joints)
-    return f"[[{angles}],{EXTERNAL}]"
+    return f"[[{angles}],{_external(external)}]"
+
+
+def _external(values: Sequence[float]) -> str:
+    """extjoint: where the external axes are, mm or degrees."""
+    known = [decimal(one, JOINT_DIGITS) for one in values]
+    return "[" + ",".join([*known, *[NO_AXIS] * (EXTERNAL - len(known))]) + "]"
+
+
+def _externals(sheet: Sheet) -> list[str]:
+    """extjoint of each pose."""
+    found = [_external(())] * len(sheet.frames)
+    for step in sheet.steps:
+        for pose in (step.pose, step.aux):
+            if pose is not None:
+                found[pose] = _external(step.external)
+    return found
 
 
 def _configurations(sheet: Sheet) -> list[str]:

@@ -14,6 +14,8 @@ from ..program import Fact, Joints, Posture, ProgramError
 from .frames import Frame
 from .text import DIGITS, Digits
 
+WITH_EXTERNAL = (".src", ".mod", ".modx")  # languages that have external axes here
+
 
 @dataclass
 class Step:
@@ -31,6 +33,7 @@ class Step:
     note: str = ""  # what a comment before it says
     joints: Optional[Joints] = None  # degrees, where they are known
     posture: Optional[Posture] = None
+    external: tuple[float, ...] = ()  # of the external axes, mm or degrees
 
 
 class Pace(NamedTuple):
@@ -81,6 +84,16 @@ class Sheet:
                 "{language}: the path speed would be another one; write RAPID, or the "
                 "poses of the part in the room",
                 language=language,
+            )
+
+    def refuse_external(self, suffix: str) -> None:
+        """Raises ProgramError for external axes in a language whose statement for them no public source shows."""
+        if suffix not in WITH_EXTERNAL and any(step.external for step in self.steps):
+            raise ProgramError(
+                "programs.writers.external",
+                "external axes are written as {known} only, not as '{suffix}'",
+                known=", ".join(WITH_EXTERNAL),
+                suffix=suffix,
             )
 
     def posture(self) -> Fact:

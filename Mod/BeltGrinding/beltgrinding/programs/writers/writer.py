@@ -128,6 +128,7 @@ def write_program(
     sheet = _sheet(
         motions, Frames(tools, "tool", known.tool_frames), Frames(bases, "base", known.base_frames)
     )
+    sheet.refuse_external(suffix)
     sheet.name = name or path.stem
     head = [comment] if comment else []
     if isinstance(program, Program):
@@ -253,6 +254,7 @@ def _sheet(motions: Iterable[Motion], tool_rows: Frames, base_rows: Frames) -> S
             step.zone = max(0.0, motion.zone_mm)
         step.share = motion.corner_share
         step.joints, step.posture = motion.joints_deg, motion.posture
+        step.external = motion.external
         step.tool, step.base, step.note = (
             tool_rows.row(motion.tool),
             base_rows.row(motion.base),

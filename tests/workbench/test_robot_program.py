@@ -13,15 +13,16 @@ from test_raster import X, job_of, plate
 
 from beltgrinding.base import frames
 from beltgrinding.cli import robot_program as command
-from beltgrinding.engine import InputError
+from beltgrinding.engine import InputError, core
 from beltgrinding.job import load as jobs, poses
+from beltgrinding.job.workpiece import read_design
 from beltgrinding.planning import commands, rounds
 from beltgrinding.presets import library
 from beltgrinding.programs.registry import read_program
 from beltgrinding.programs.writers import fanuc, krl, rapid
 from beltgrinding.programs.program import Posture
 from beltgrinding.raster import raster_path as raster
-from beltgrinding.robot_program import passes, scenes, whole as wholes, write as writing
+from beltgrinding.robot_program import lifts, passes, scenes, whole as wholes, write as writing
 from beltgrinding.job.typed import typed
 from support.freecad import ROOT
 
@@ -454,3 +455,38 @@ def test_a_link_goes_by_a_safe_place_where_no_direct_way_is_found(laid, monkeypa
     assert whole.moves[1].joints_deg == pytest.approx(safe)
     whole = writing.plan_job(cell(laid=laid))
     assert [fact.code for fact in whole.problems] == ["robot_program.no_link"]
+
+
+def test_links_lift_the_wheel_off_the_part_before_a_search(laid):
+    """A wall between two passes: the way over it goes off the part, across and down, with the least lift that does."""
+    wall = {"name": "wall", "frame": "part", "brep": brep([-20, 28, 1], [120, 32, 25])}
+    job = typed(cell(laid=laid))
+    planner = wholes.Planner(job, 0, read_design(job.design), core.RunContext())
+    of = planner.scenes
+    ends = [np.radians(m.joints_deg) for m in writing.plan_job(job).moves if m.note.startswith("pass")]  # fmt: skip
+    ends = [ends[0], ends[-1]]
+    near = typed(cell(laid=laid, bodies=[wall]))
+    scene = wholes.Planner(near, 0, read_design(near.design), core.RunContext()).scenes.links
+    off = lifts.off_the_part(scene, near.cell)
+    a, b = (of.links.base_from_tcp(q) for q in ends)
+    assert abs(a[1, 3] - b[1, 3]) > 35  # on both sides of it
+    both, clearance = (off, off), near.robot.program.clearance_mm
+    found = lifts.link(scene, (ends[0], ends[1]), both, 30.0, clearance, 0.5)
+    way = found["joints"]
+    assert len(way) == 4 and not found["straight"] and found["clearance"] == clearance
+    for p, q in zip(way[:-1], way[1:]):
+        for share in np.linspace(0, 1, 200):
+            assert scene.within(p + share * (q - p), 0.9 * clearance) is None
+    begin, lifted = (scene.base_from_tcp(q) for q in way[:2])
+    rise = lifted[:3, 3] - begin[:3, 3]
+    assert np.abs(rise - [0, 0, rise[2]]).max() < 1e-6  # along the plate's normal
+    share = rise[2] / 30.0
+    assert any(share == pytest.approx(one, abs=1e-6) for one in lifts.SHARES)
+    for less in (one for one in lifts.SHARES if 0 < one < share - 1e-6):
+        lower = [off(q, 30.0 * less) for q in (ends[0], ends[1])]
+        assert scene.on_way(*lower, clearance, 0.5) is not None
+    # An end that stays where it is.
+    home = planner.home
+    way = lifts.link(scene, (home, ends[0]), (None, off), 30.0, clearance, 0.5)["joints"]
+    assert (way[0] == home).all() and len(way) <= 3
+    assert planner._off(home, off) is None and planner._off(ends[0], off) is off

@@ -52,6 +52,16 @@ def validate(axes: Sequence[Json]) -> None:
                 )
 
 
+def refuse_held(axes: Sequence[Json], holding: str) -> None:
+    """Raises InputError for a positioner of the part that the robot holds (a job's ``cell.holding``)."""
+    if holding == "part_in_hand" and any(one["carries"] == PART for one in axes):
+        raise InputError(
+            "presets.external_of_held",
+            "{key}: no external axis carries the part that the robot holds; it carries the robot",
+            key="robot.external_axes",
+        )
+
+
 def at(axes: Sequence[Json], what: str) -> tuple[float, ...]:
     """The axes' values: ``what`` is home or position."""
     return tuple(float(one[what]) for one in axes)

@@ -15,6 +15,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from ..base import frames
+from ..base.files import in_file
 from ..base.kinds import Floats, Json
 from ..base.regular_files import read_regular
 from ..engine import InputError
@@ -53,7 +54,7 @@ class Tree:
         self.root = self._rooted()
 
     def fault(self, code: str, text: str, /, **values: object) -> InputError:
-        return InputError(code, "{file}: " + text, file=self.file, **values)
+        return in_file(InputError(code, text, **values), self.file)
 
     def chain(self, base: str, tip: str) -> list[Joint] | None:
         """The joints from one link to another, in order; None: it does not carry it."""

@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from ..base import kept
+from ..base.files import in_file
 from ..base.kinds import Array, Floats, Json
 from ..base.regular_files import read_regular
 from ..engine import InputError, core
@@ -44,7 +45,7 @@ def bodies(model: Json, packages: Sequence[str], wanted: tuple[str, str]) -> lis
     """
     arm = arm_of(model)
     pieces = list(_pieces(arm, wanted))
-    files = _files_of(arm.tree, pieces, packages)
+    meshes = _files_of(arm.tree, pieces, packages)
 
     def read() -> list[Mesh]:
         found: list[list[Mesh]] = [[] for _ in range(len(arm.moving()) + 1)]
@@ -56,7 +57,7 @@ def bodies(model: Json, packages: Sequence[str], wanted: tuple[str, str]) -> lis
         return None
     return kept.get(
         "urdf",
-        lambda: (arm.tree.data, [read_regular(one, LIMIT) for one in files], dict(model), wanted),
+        lambda: (arm.tree.data, [read_regular(one, LIMIT) for one in meshes], dict(model), wanted),
         read,
         lambda found: VERTEX_BYTES * sum(len(points) for points, _ in found),
     )  # fmt: skip
@@ -138,9 +139,8 @@ def _read(tree: Tree, file: Path, piece: Piece) -> Mesh:
     try:
         mesh = core.read_mesh(str(file), METRE)
     except InputError as error:
-        raise error.within(
-            "presets.urdf_of_link", "{file}: link {link}: ", file=tree.file, link=piece.link
-        ) from None
+        error = error.within("presets.urdf_of_link", "link {link}: ", link=piece.link)
+        raise in_file(error, tree.file) from None
     scale = tree.vector(piece.element[0], "scale", "1 1 1", piece.link)
     faces = np.asarray(mesh.triangles, dtype=int)
     if np.prod(scale) < 0.0:  # mirrored: outside stays outside

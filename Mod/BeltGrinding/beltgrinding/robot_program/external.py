@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -43,7 +43,7 @@ class Sweep:
     """The cell of a validated job while its external axes move. ``bodies``: as ``core.find_collisions`` takes them,
     placed as they are in the passes; ``home`` (6,) rad: where the arm stands meanwhile."""
 
-    def __init__(self, job: Job, bodies: list[Json], home: Floats) -> None:
+    def __init__(self, job: Job, bodies: Sequence[Json], home: Floats) -> None:
         self.axes = records.plain(job.robot.external_axes)
         self.bodies, self.cell = bodies, job.cell
         robot = records.plain(job.robot)
@@ -60,7 +60,7 @@ class Sweep:
         for event in found["events"]:
             yield event["bodies"][0], event["bodies"][1]
 
-    def _path(self, stage: Stage) -> tuple[core.ToolPath, list[Json]]:
+    def _path(self, stage: Stage) -> tuple[core.ToolPath, list[dict[str, Any]]]:
         """What the axis carries, as a tool whose frame has its origin on the axis; all else stands in the base."""
         carried = self.axes[stage.number]["carries"]
         start = self._moved(stage.begin, carried)
@@ -73,7 +73,8 @@ class Sweep:
         poses = [
             self._moved(tuple(one), carried) @ np.linalg.inv(start) @ on_axis for one in values
         ]
-        moving, listed = np.linalg.inv(on_axis), []
+        moving = np.linalg.inv(on_axis)
+        listed: list[dict[str, Any]] = []
         for body in self.bodies:
             frame, goes = self._place(body, stage.begin)
             if goes == carried and body["name"] == FOOT:

@@ -49,5 +49,5 @@ def of_job(
         robots.robot_frame(robot, "base_from_robot"),
         robots.robot_frame(robot, "flange_from_tcp"),
     )
-    made = (core.ArmScene(arm, path, bodies, *frames, context) for bodies in (near, whole))
-    return Scenes(*made, whole, near)
+    passes, links = (core.ArmScene(arm, path, one, *frames, context) for one in (near, whole))
+    return Scenes(passes, links, whole, near)

@@ -18,7 +18,7 @@ from ..job.poses import program_name
 from ..job.settings import Job
 from ..job.typed import typed
 from ..presets import external_axes, robot as robots
-from . import external, facts, scenes as scene_lists
+from . import external, facts, lifts, scenes as scene_lists
 from .moves import Move, Whole
 from .passes import Pass, least_way, split
 from .retract import retracted
@@ -106,8 +106,7 @@ class Planner:
     def _set_out(self) -> None:
         """From home, where the external axes go one by one to where they stand in the passes."""
         stages = external.stages(self.axes)
-        begin = stages[0].begin if stages else self.external
-        self._at_home(begin, "home")
+        self._at_home(stages[0].begin if stages else self.external, "home")
         sweep = external.Sweep(self.job, self.scenes.bodies, self.home) if stages else None
         for stage in stages:
             name = external_axes.NAME.format(stage.number + 1)
@@ -284,11 +283,23 @@ class Planner:
         self.at = to
 
     def _way(self, begin: Floats, end: Floats) -> dict[str, Any] | None:
-        found: dict[str, Any] | None = self.scenes.links.link(
-            begin, end, self.settings.clearance_mm, LINK_STEP, self.settings.seed,
-            context=self.context.part(0.0, 0.0),
-        )  # fmt: skip
+        scene, own = self.scenes.links, self.settings
+        off = lifts.off_the_part(scene, self.job.cell)
+        ways_off = (self._off(begin, off), self._off(end, off))
+        found = lifts.link(
+            scene, (begin, end), ways_off, own.retract_mm, own.clearance_mm, LINK_STEP
+        )
+        if found is None:
+            found = scene.link(
+                begin, end, own.clearance_mm, LINK_STEP, own.seed,
+                context=self.context.part(0.0, 0.0),
+            )  # fmt: skip
         return found
+
+    def _off(self, q: Floats, off: lifts.Lifted) -> lifts.Lifted | None:
+        """``off`` of a place at the part; of the user's own places None."""
+        own = [self.settings.home_joints_deg, *self.settings.safe_joints_deg]
+        return None if any(np.array_equal(q, np.radians(one)) for one in own) else off
 
     def _problem_of_link(self, to: Floats, note: str) -> None:
         clearance = self.settings.clearance_mm / 8.0

@@ -10,6 +10,7 @@ import pytest
 import PyKDL
 from test_collision import brep
 from test_raster import X, job_of, plate
+from test_robot import pose_row
 
 from beltgrinding.base import frames
 from beltgrinding.cli import robot_program as command
@@ -22,7 +23,14 @@ from beltgrinding.programs.registry import read_program
 from beltgrinding.programs.writers import fanuc, krl, rapid
 from beltgrinding.programs.program import Posture
 from beltgrinding.raster import raster_path as raster
-from beltgrinding.robot_program import lifts, passes, scenes, whole as wholes, write as writing
+from beltgrinding.robot_program import (
+    corners,
+    lifts,
+    passes,
+    scenes,
+    whole as wholes,
+    write as writing,
+)
 from beltgrinding.job.typed import typed
 from support.freecad import ROOT
 
@@ -490,3 +498,41 @@ def test_links_lift_the_wheel_off_the_part_before_a_search(laid):
     way = lifts.link(scene, (home, ends[0]), (None, off), 30.0, clearance, 0.5)["joints"]
     assert (way[0] == home).all() and len(way) <= 3
     assert planner._off(home, off) is None and planner._off(ends[0], off) is off
+
+
+def test_a_corner_that_the_controller_rounds_is_looked_at(laid):
+    """A pin inside of a corner: both straight ways are clear of it, the arc is not, until its zone is smaller."""
+    down = np.eye(4)
+    down[:3, :3] = np.diag([1.0, -1.0, -1.0])
+    frames_of = []
+    for x, z in ((0, 140), (0, 60), (80, 60)):
+        frame = down.copy()
+        frame[:3, 3] = x + 20, 30, z
+        frames_of.append(frame)
+    listed = [
+        {**pose_row(frame), "feed_mm_s": 40.0, "rapid": k == 0} for k, frame in enumerate(frames_of)
+    ]
+    # A rod that the tool carries to the side; the pin lies 10 mm beside both of its ways.
+    rod = {"name": "rod", "frame": "tool", "brep": brep([-1, -61, -1], [1, -59, 1])}
+    pin = {"name": "pin", "frame": "base", "brep": brep([29, 85, 69], [31, 95, 71])}
+    found = {}
+    for zone in (0.0, 4.0, 40.0):
+        job = {**cell(laid=laid, bodies=[rod, pin]), "programs": [{"name": "corner", "poses": [{**one, "zone_mm": zone} for one in listed], "unresolved": 0}]}  # fmt: skip
+        found[zone] = [fact.code for fact in writing.plan_job(jobs.validate(job)).problems]
+    assert found == {0.0: [], 4.0: [], 40.0: ["robot_program.corner_meets"]}
+
+
+def test_arcs_lie_between_the_ways_beside_their_corner():
+    a, b, c = np.eye(4), np.eye(4), np.eye(4)
+    b[0, 3], c[:2, 3] = 10, (10, 8)
+    moves = [wholes.Move(kind, one, np.zeros(6), zone=zone) for kind, one, zone in (("PTP", a, 0), ("LIN", b, 100), ("LIN", c, 2))]  # fmt: skip
+    ((move, places),) = corners.rounded(moves, 1.0)
+    assert move is moves[1]
+    points = np.array([one[:3, 3] for one in places])
+    assert points[0] == pytest.approx([6, 0, 0]) and points[-1] == pytest.approx([10, 4, 0])
+    assert points[len(points) // 2] == pytest.approx([9, 1, 0])  # a parabola's middle
+    moves[1].zone = 0.0
+    assert not list(corners.rounded(moves, 1.0))
+    moves[1].zone = -1.0
+    ((_, places),) = corners.rounded(moves, 1.0)
+    assert places[0][:3, 3] == pytest.approx([9, 0, 0])

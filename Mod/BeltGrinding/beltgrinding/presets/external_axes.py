@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..base import frames
 from ..base.kinds import Floats, Json
 from ..engine import InputError
 
@@ -90,10 +91,7 @@ def _moved(one: Json, value: float) -> Floats:
     if one["kind"] == LINEAR:
         frame[:3, 3] = value * axis
         return frame
-    # Rodrigues' formula.
-    cross = np.cross(np.eye(3), axis)  # times a vector: axis x vector
-    angle = np.radians(value)
-    frame[:3, :3] += np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross
+    frame[:3, :3] = frames.rotation(np.radians(value) * axis)
     origin = np.asarray(one["origin_mm"], dtype=float)
     frame[:3, 3] = origin - frame[:3, :3] @ origin
     return frame

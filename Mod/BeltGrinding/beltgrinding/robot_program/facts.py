@@ -39,6 +39,15 @@ def meets(**named: object) -> Fact:
     )
 
 
+def corner_meets(**named: object) -> Fact:
+    return Fact(
+        "robot_program.corner_meets",
+        "{program}: {body} and {other} run into each other where the controller rounds the corner at {place}; give it a "
+        "smaller zone",
+        **named,
+    )
+
+
 def external_meets(**named: object) -> Fact:
     return Fact(
         "robot_program.external_meets",

@@ -14,11 +14,12 @@ from ..base import records
 from ..base.kinds import Context, Floats, Json, known
 from ..cell import tool_path as tool_paths
 from ..engine import InputError, core
+from ..job import robot_time
 from ..job.poses import program_name
 from ..job.settings import Job
 from ..job.typed import typed
 from ..presets import external_axes, robot as robots
-from . import external, facts, lifts, scenes as scene_lists
+from . import corners, external, facts, lifts, scenes as scene_lists
 from .moves import Move, Whole
 from .passes import Pass, least_way, split
 from .retract import retracted
@@ -28,6 +29,7 @@ STEP, TURN = 1.0, 0.02  # mm, rad, between places of the tool's straight ways th
 LINK_STEP = 0.5  # mm, of the search
 ROLL_STEP, LEAN_STEP, SHIFT_STEP = math.radians(10.0), math.radians(2.5), 0.25  # the last: of most
 RETRACTS = (1.0, 0.5, 2.0, 0.25, 4.0)  # times the job's, that are tried
+BLEND = 1.0  # mm, of corners whose motion gives no zone, as writers have it
 SLOWER = 1e-3  # relative; less is no lower feed
 
 
@@ -99,6 +101,7 @@ class Planner:
             self._run(poses[begin:end])
         self._link(self.home, "home")
         self._go_back()
+        self._look_at_corners()
         self._tell(found)
         self.context.report(1.0)
         return self.whole
@@ -337,6 +340,18 @@ class Planner:
             self.whole.problems.append(
                 facts.meets(program=self.name, body=met[0], other=met[1], place=place)
             )
+
+    def _look_at_corners(self) -> None:
+        default = max(robot_time.limits(self.job).default_zone_mm, BLEND)
+        for move, places in corners.rounded(self.whole.moves, default):
+            way = corners.way(self.scenes.passes, move, places)
+            met = None if way is None else self._met(self.scenes.passes, way)
+            if met is not None:
+                place = f"line {move.line}" if move.line else "a pose"
+                self.whole.problems.append(
+                    facts.corner_meets(program=self.name, body=met[0], other=met[1], place=place)
+                )
+                return
 
     @staticmethod
     def _met(scene: core.ArmScene, way: Floats) -> tuple[Any, ...] | None:

@@ -31,6 +31,7 @@ NAMES = {
     "robot.model": "RobotModel",
     "robot.model.joints": "Joint",
     "robot.external_axes": "ExternalAxis",
+    "robot.load": "Load",
     "robot.program": "RobotProgram",
     "finish.model": "FinishModel",
     "finish.model.ranges": "FinishRanges",

@@ -536,3 +536,26 @@ def test_arcs_lie_between_the_ways_beside_their_corner():
     moves[1].zone = -1.0
     ((_, places),) = corners.rounded(moves, 1.0)
     assert places[0][:3, 3] == pytest.approx([9, 0, 0])
+
+
+@pytest.mark.parametrize(
+    "name, robot, home, line",
+    [
+        ("w.src", KUKA, HOME, "$LOAD={M 12.5,CM {X 0,Y -4,Z 80.5,A 0,B 0,C 0},J {X 0.1,Y 0.2,Z 0.3}}"),
+        ("w.mod", ABB, [60, 0, 0, 0, 60, 0], ",[12.5,[0,-4,80.5],[1,0,0,0],0.1,0.2,0.3]];"),
+        ("w.script", KUKA, HOME, "set_target_payload(12.5, [0, -0.004, 0.0805], [0.1, 0.2, 0.3, 0, 0, 0])"),
+        ("w.ls", FANUC, [60, 0, 0, 0, -60, 0], "load of the flange: 12.5 kg at 0, -4, 80.5 mm"),
+    ],
+)  # fmt: skip
+def test_programs_set_the_load_of_the_flange(name, robot, home, line, laid, tmp_path):
+    load = {"mass_kg": 12.5, "centre_mm": [0, -4, 80.5], "inertia_kg_m2": [0.1, 0.2, 0.3]}
+    job, file = cell({**robot, "load": load}, laid=laid, home_joints_deg=home), tmp_path / name
+    whole = writing.plan_job(job)
+    given = {"tools": "3", "bases": "5"} if name == "w.ls" else {}
+    writing.write(file, job, whole, **given)  # and reads it again
+    text = file.read_text()
+    assert line in re.sub(r"\s+", " ", re.sub(r";\n +\d+:!", " ", text))  # Fanuc's comments are short
+    assert "Enter its load" not in text
+    none = tmp_path / f"none_{name}"
+    writing.write(none, cell(robot, laid=laid, home_joints_deg=home), whole, **given)
+    assert line not in none.read_text()

@@ -372,6 +372,15 @@ class RobotModel:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Load:
+    """``robot.load`` of a job."""
+
+    mass_kg: float
+    centre_mm: tuple[float, float, float]
+    inertia_kg_m2: tuple[float, float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
 class ExternalAxis:
     """``robot.external_axes`` of a job."""
 
@@ -412,6 +421,7 @@ class Robot:
     preset: str
     model: RobotModel
     packages: tuple[str, ...]
+    load: Load
     external_axes: tuple[ExternalAxis, ...]
     base_from_robot: Frame | None = None
     flange_from_tcp: Frame | None = None

@@ -110,6 +110,7 @@ KEYS = (
     Key("Controller", "String", "Robot", "robot.controller"),
     Key("RobotModel", "JSON", "Robot", "robot.model"),
     Key("RobotPackages", "JSON", "Robot", "robot.packages"),
+    Key("Load", "JSON", "Robot", "robot.load"),
     Key("ExternalAxes", "JSON", "Robot", "robot.external_axes"),
     Key("RobotProgram", "JSON", "Robot", "robot.program"),
     Key("StartJoints", "JSON", "Robot", "robot.start_joints_deg"),

@@ -23,6 +23,7 @@ from ..programs.force_device import of_job
 from ..programs.program import Motion, Posture, Program
 from ..programs.registry import read_program
 from ..programs.writers.frames import words_of_cell
+from ..programs.writers.sheet import Load
 from ..programs.writers.writer import write_program
 from . import whole as wholes
 from .moves import Move, Whole
@@ -125,6 +126,7 @@ def write(
         "force_device": of_job(job),
         "pace": robot_time.limits(job).pace,
         "joint_percent": job.robot.program.joint_speed_percent,
+        "load": _load(job),
     }
     made = program(whole, job)
     if unsafe and whole.problems:
@@ -137,6 +139,11 @@ def write(
             check_joints(tried, job, whole)
         os.replace(tried, file)
     return [*notes]
+
+
+def _load(job: Job) -> Load | None:
+    load = job.robot.load
+    return Load(load.mass_kg, load.centre_mm, load.inertia_kg_m2) if load.mass_kg > 0.0 else None
 
 
 def joints_of_file(file: Path, job: Job | Json) -> Floats:

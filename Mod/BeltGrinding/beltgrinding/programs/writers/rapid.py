@@ -21,12 +21,12 @@ from .text import DIGITS, ZONE_DIGITS, Digits, identifier, rounded, rounded_quat
 if TYPE_CHECKING:
     from .frames import Frame
     from ..force_device import ForceDevice
-    from .sheet import Sheet, Step
+    from .sheet import Load, Sheet, Step
 
 MOST = 32  # characters of an identifier
 FORCE_DIGITS = 4  # of N along an axis
 EXTERNAL, NO_AXIS = 6, "9E+09"  # external axes of a target; the value of one that is not there
-JOINT_DIGITS = 6  # of degrees
+JOINT_DIGITS, LOAD_DIGITS = 6, 4  # of degrees; of kg, mm, kg m2
 NAME = re.compile(r"[A-Za-z]\w{0,31}", re.ASCII)
 TYPES = {"tool": "tooldata", "base": "wobjdata"}
 DECLARED = {"tool": "tool_", "base": "wobj_"}
@@ -49,7 +49,7 @@ def text(sheet: Sheet) -> bytes:
             there = name in names[frame.what]  # one of the controller's may be given for several
             names[frame.what].append(name)
             if frame.given:
-                lines += _declaration(frame, name, held)
+                lines += _declaration(frame, name, held, sheet.load)
             elif not there:
                 lines += _asked_for(frame, name, held)
                 sheet.notes.append(undeclared(frame, name))
@@ -173,20 +173,26 @@ def _name(frame: Frame, number: int) -> str:
     return name
 
 
-def _declaration(frame: Frame, name: str, held: bool) -> list[str]:
+def _declaration(frame: Frame, name: str, held: bool, load: Load | None) -> list[str]:
     words = f"  ! {'tool' if frame.what == 'tool' else 'work object'} {frame.told}"
     if frame.what == "tool":
-        return [
-            words,
-            "  ! Enter its load before the program runs.",
-            f"  PERS tooldata {name}:=[{_flag(not held)},{_pose(known(frame.pose))},"
-            "[1,[0,0,1],[1,0,0,0],0,0,0]];",
-        ]
+        asked = [] if load else ["  ! Enter its load before the program runs."]
+        place = f"{_flag(not held)},{_pose(known(frame.pose))}"
+        return [words, *asked, f"  PERS tooldata {name}:=[{place},{_load(load)}];"]
     return [
         words,
         f'  PERS wobjdata {name}:=[{_flag(held)},TRUE,"",{_pose(known(frame.pose))},'
         "[[0,0,0],[1,0,0,0]]];",
     ]
+
+
+def _load(load: Load | None) -> str:
+    """loaddata, in the wrist's frame; of a load that is not known the least that the controller takes."""
+    if load is None:
+        return "[1,[0,0,1],[1,0,0,0],0,0,0]"
+    at = ",".join(decimal(one, LOAD_DIGITS) for one in load.centre_mm)
+    about = ",".join(decimal(one, LOAD_DIGITS) for one in load.inertia_kg_m2)
+    return f"[{decimal(load.mass_kg, LOAD_DIGITS)},[{at}],[1,0,0,0],{about}]"
 
 
 def _asked_for(frame: Frame, name: str, held: bool) -> list[str]:

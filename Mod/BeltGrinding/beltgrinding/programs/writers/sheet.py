@@ -36,6 +36,18 @@ class Step:
     external: tuple[float, ...] = ()  # of the external axes, mm or degrees
 
 
+class Load(NamedTuple):
+    """What the flange carries, as controllers want it."""
+
+    mass_kg: float
+    centre_mm: tuple[float, float, float]  # of gravity, in the flange
+    inertia_kg_m2: tuple[float, float, float]  # about it, along the flange's axes; 0: not known
+
+    def told(self) -> str:
+        at = ", ".join(f"{one:g}" for one in self.centre_mm)
+        return f"load of the flange: {self.mass_kg:g} kg at {at} mm; set it on the controller"
+
+
 class Pace(NamedTuple):
     """What a program sets of the robot's time law, where the language has a statement for it."""
 
@@ -67,6 +79,7 @@ class Sheet:
     device: Optional[ForceDevice] = None  # that the program sets its forces by
     pace: Optional[Pace] = None
     joint_percent: Optional[float] = None  # speed of joint motions; None: the controller's
+    load: Optional[Load] = None  # that the program sets; None: it leaves it to the controller
     notes: list[Fact] = field(default_factory=list)  # what the program takes for granted
 
     def ways(self) -> tuple[Floats, Floats]:

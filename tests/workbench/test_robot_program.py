@@ -554,7 +554,9 @@ def test_programs_set_the_load_of_the_flange(name, robot, home, line, laid, tmp_
     given = {"tools": "3", "bases": "5"} if name == "w.ls" else {}
     writing.write(file, job, whole, **given)  # and reads it again
     text = file.read_text()
-    assert line in re.sub(r"\s+", " ", re.sub(r";\n +\d+:!", " ", text))  # Fanuc's comments are short
+    assert line in re.sub(
+        r"\s+", " ", re.sub(r";\n +\d+:!", " ", text)
+    )  # Fanuc's comments are short
     assert "Enter its load" not in text
     none = tmp_path / f"none_{name}"
     writing.write(none, cell(robot, laid=laid, home_joints_deg=home), whole, **given)

@@ -18,7 +18,7 @@ from beltgrinding.engine import InputError, core
 from beltgrinding.job import load as jobs, poses
 from beltgrinding.job.workpiece import read_design
 from beltgrinding.planning import commands, rounds
-from beltgrinding.presets import library
+from beltgrinding.presets import library, robot as robots
 from beltgrinding.programs.registry import read_program
 from beltgrinding.programs.writers import fanuc, krl, rapid
 from beltgrinding.programs.program import Posture
@@ -561,3 +561,34 @@ def test_programs_set_the_load_of_the_flange(name, robot, home, line, laid, tmp_
     none = tmp_path / f"none_{name}"
     writing.write(none, cell(robot, laid=laid, home_joints_deg=home), whole, **given)
     assert line not in none.read_text()
+
+
+def test_no_joint_is_too_fast_between_two_poses():
+    """A motion straight past axis 1 turns it most in its middle: on the mean from pose to pose it is slow."""
+    made = [np.eye(4), np.eye(4)]
+    for frame, y in zip(made, (-300.0, 300.0)):
+        frame[:3, :3] = np.diag([1.0, -1.0, -1.0])
+        frame[:3, 3] = (100, y, 0)
+    listed = [{**pose_row(frame), "feed_mm_s": 1400.0, "rapid": k == 0} for k, frame in enumerate(made)]  # fmt: skip
+    robot = {**KUKA, "base_from_robot": {"position_mm": [0, 0, -500]}, "flip_deg": 175}
+    job = cell(robot)
+    job = jobs.validate({**job, "cell": {**job["cell"], "check_collisions": False}, "programs": [{"name": "past", "poses": listed, "unresolved": 0}]})  # fmt: skip
+    whole = writing.plan_job(job)
+    assert not whole.problems, [str(one) for one in whole.problems]
+    moves = [one for one in whole.moves if one.kind == "LIN"]
+    arm = robots.arm_of(job["robot"])
+    base, tool = (robots.robot_frame(job["robot"], key) for key in ("base_from_robot", "flange_from_tcp"))  # fmt: skip
+    fastest = 0.0
+    for before, move in zip(whole.moves[:-1], whole.moves[1:]):
+        if move.kind != "LIN":
+            continue
+        q, count = np.radians(before.joints_deg), 2000
+        seconds = np.linalg.norm(move.frame[:3, 3] - before.frame[:3, 3]) / move.feed
+        for k in range(1, count + 1):
+            place = before.frame + (move.frame - before.frame) * k / count  # it does not turn
+            rows = arm.inverse(np.linalg.inv(base) @ place @ np.linalg.inv(tool), q)
+            after = rows[np.argmin(np.abs(rows - q).max(axis=1))]
+            fastest = max(fastest, (np.abs(after - q) * count / seconds / arm.max_speed).max())
+            q = after
+    assert 0.8 < fastest < 1.02
+    assert min(one.feed for one in moves) < 900 and whole.figures["slower"] > 0

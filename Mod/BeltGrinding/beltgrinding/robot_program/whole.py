@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..base import records
+from ..base import frames, records
 from ..base.kinds import Context, Floats, Json, known
 from ..cell import tool_path as tool_paths
 from ..engine import InputError, core
@@ -30,6 +30,7 @@ LINK_STEP = 0.5  # mm, of the search
 ROLL_STEP, LEAN_STEP, SHIFT_STEP = math.radians(10.0), math.radians(2.5), 0.25  # the last: of most
 RETRACTS = (1.0, 0.5, 2.0, 0.25, 4.0)  # times the job's, that are tried
 BLEND = 1.0  # mm, of corners whose motion gives no zone, as writers have it
+LEAST_FEED = 1e-3  # mm/s
 SLOWER = 1e-3  # relative; less is no lower feed
 
 
@@ -73,6 +74,7 @@ class Planner:
         self.arm = known(robots.arm_of(self.robot))
         self.axes = self.robot["external_axes"]
         self.external = external_axes.at(self.axes, "position")
+        self.turning = math.radians(robot_time.limits(job).rotation_speed_deg_s)
         if self.arm.structure == "general":
             name = robots.name(self.robot)
             self.whole.notes.append(facts.no_closed_form(robot=name))
@@ -332,6 +334,7 @@ class Planner:
         if not gets_there or np.abs(way[-1] - q).max() > 1e-6:
             self._tell_broken(move)
             return
+        self._keep_pace(move, way)
         met = self._met(self.scenes.passes, way)
         known_of = None if met is None else (*met[:2], self.numbers["passes"])
         if met is not None and known_of not in self.told:  # once a pass
@@ -340,6 +343,22 @@ class Planner:
             self.whole.problems.append(
                 facts.meets(program=self.name, body=met[0], other=met[1], place=place)
             )
+
+    def _keep_pace(self, move: Move, way: Floats) -> None:
+        """Lowers a motion's feed so far that no joint is too fast anywhere on its ``way``, whose parts are equally long:
+        between two poses a joint may turn mostly in one place."""
+        before = self.whole.moves[-1].frame
+        length = float(np.linalg.norm(move.frame[:3, 3] - before[:3, 3]))
+        turn = float(np.linalg.norm(frames.rotation_vectors((before[:3, :3].T @ move.frame[:3, :3])[None])))  # fmt: skip
+        seconds = max(length / max(move.feed, LEAST_FEED), turn / self.turning)
+        if length <= 0.0 or seconds <= 0.0 or len(way) < 2:
+            return
+        fastest = np.abs(np.diff(way, axis=0)).max(axis=0) * (len(way) - 1) / seconds
+        known_of = self.arm.max_speed > 0.0
+        most = float((fastest[known_of] / self.arm.max_speed[known_of]).max(initial=0.0))
+        if most > 1.0 + SLOWER:
+            move.feed = length / (seconds * most)
+            self.numbers["slower"] += 1
 
     def _look_at_corners(self) -> None:
         default = max(robot_time.limits(self.job).default_zone_mm, BLEND)

@@ -26,6 +26,7 @@ from beltgrinding.raster import raster_path as raster
 from beltgrinding.robot_program import (
     corners,
     lifts,
+    linking,
     passes,
     scenes,
     whole as wholes,
@@ -449,7 +450,7 @@ def test_a_pass_that_no_posture_does_is_cut_and_told(laid):
 
 def test_a_link_goes_by_a_safe_place_where_no_direct_way_is_found(laid, monkeypatch):
     safe = [20.0, -100.0, 100.0, 0.0, 60.0, 0.0]
-    direct = wholes.Planner._way
+    direct = linking.Linker._way
     home = np.radians(HOME)
 
     def way(self, begin, end):
@@ -457,7 +458,7 @@ def test_a_link_goes_by_a_safe_place_where_no_direct_way_is_found(laid, monkeypa
             return None
         return direct(self, begin, end)
 
-    monkeypatch.setattr(wholes.Planner, "_way", way)
+    monkeypatch.setattr(linking.Linker, "_way", way)
     whole = writing.plan_job(cell(laid=laid, safe_joints_deg=[safe]))
     assert not whole.problems
     assert whole.moves[1].joints_deg == pytest.approx(safe)
@@ -497,7 +498,7 @@ def test_links_lift_the_wheel_off_the_part_before_a_search(laid):
     home = planner.home
     way = lifts.link(scene, (home, ends[0]), (None, off), 30.0, clearance, 0.5)["joints"]
     assert (way[0] == home).all() and len(way) <= 3
-    assert planner._off(home, off) is None and planner._off(ends[0], off) is off
+    assert planner.linker._off(home) is None and planner.linker._off(ends[0]) is not None
 
 
 def test_a_corner_that_the_controller_rounds_is_looked_at(laid):

@@ -19,18 +19,22 @@ from ..job.poses import program_name
 from ..job.settings import Job
 from ..job.typed import typed
 from ..presets import external_axes, robot as robots
-from . import corners, external, facts, lifts, scenes as scene_lists
+from . import corners, external, facts, scenes as scene_lists
+from .linking import Linker
 from .moves import Move, Whole
 from .passes import Pass, least_way, split
 from .retract import retracted
 
 RESOLUTION = 0.05  # mm, of the last look
 STEP, TURN = 1.0, 0.02  # mm, rad, between places of the tool's straight ways there
-LINK_STEP = 0.5  # mm, of the search
 ROLL_STEP, LEAN_STEP, SHIFT_STEP = math.radians(10.0), math.radians(2.5), 0.25  # the last: of most
 RETRACTS = (1.0, 0.5, 2.0, 0.25, 4.0)  # times the job's, that are tried
 BLEND = 1.0  # mm, of corners whose motion gives no zone, as writers have it
 LEAST_FEED = 1e-3  # mm/s
+MAY_BE_FAST, FINER = (
+    0.3,
+    20.0,
+)  # of a joint's limit, from where a way is looked at in parts so much finer
 SLOWER = 1e-3  # relative; less is no lower feed
 
 
@@ -79,6 +83,7 @@ class Planner:
             name = robots.name(self.robot)
             self.whole.notes.append(facts.no_closed_form(robot=name))
         self.home = np.radians(self.settings.home_joints_deg)
+        self.linker = Linker(self.scenes.links, job.cell, self.settings, context)
         self.given = tool_paths.motions(path)
         self.passes = self._passes()
         self.rows = np.concatenate([np.arange(one.first, one.last + 1) for one in self.passes])
@@ -266,58 +271,22 @@ class Planner:
         return None
 
     def _link(self, to: Floats, note: str) -> None:
-        """Joint motions from where the arm is, by the user's safe places where no direct way is found."""
-        ways = [[to]] + [[np.radians(safe), to] for safe in self.settings.safe_joints_deg]
-        for places in ways:
-            found, begin = [], self.at
-            for place in places:
-                found.append(self._way(begin, place))
-                begin = place
-            if all(one is not None for one in found):
-                break
-        else:
-            self._problem_of_link(to, note)
+        """Joint motions from where the arm is."""
+        found = self.linker.find(self.at, to)
+        if found is None:
+            body, other = self.linker.in_the_way(self.at, to)
+            self.whole.problems.append(
+                facts.no_link(program=self.name, place=note, body=body, other=other)
+            )
             found = [{"joints": np.stack([self.at, to]), "straight": True, "clearance": 0.0}]
         self.numbers["links"] += 1
-        self.numbers["links_round"] += any(not known(one)["straight"] for one in found)
+        self.numbers["links_round"] += any(not one["straight"] for one in found)
         for one in found:
-            self.least_clearance = min(self.least_clearance, known(one)["clearance"])
-            for q in known(one)["joints"][1:]:
+            self.least_clearance = min(self.least_clearance, one["clearance"])
+            for q in one["joints"][1:]:
                 self._move(Move("PTP", self._frame(q), np.degrees(q), note=note), look=False)
                 note = ""
         self.at = to
-
-    def _way(self, begin: Floats, end: Floats) -> dict[str, Any] | None:
-        scene, own = self.scenes.links, self.settings
-        off = lifts.off_the_part(scene, self.job.cell)
-        ways_off = (self._off(begin, off), self._off(end, off))
-        found = lifts.link(
-            scene, (begin, end), ways_off, own.retract_mm, own.clearance_mm, LINK_STEP
-        )
-        if found is None:
-            found = scene.link(
-                begin, end, own.clearance_mm, LINK_STEP, own.seed,
-                context=self.context.part(0.0, 0.0),
-            )  # fmt: skip
-        return found
-
-    def _off(self, q: Floats, off: lifts.Lifted) -> lifts.Lifted | None:
-        """``off`` of a place at the part; of the user's own places None."""
-        own = [self.settings.home_joints_deg, *self.settings.safe_joints_deg]
-        return None if any(np.array_equal(q, np.radians(one)) for one in own) else off
-
-    def _problem_of_link(self, to: Floats, note: str) -> None:
-        clearance = self.settings.clearance_mm / 8.0
-        met = self.scenes.links.within(self.at, clearance) or self.scenes.links.within(
-            to, clearance
-        )
-        if met is None:
-            met = self.scenes.links.on_way(self.at, to, clearance, RESOLUTION)
-        if met is None:  # cannot be: the straight way is tried first
-            met = ("", "", 0.0)
-        self.whole.problems.append(
-            facts.no_link(program=self.name, place=note, body=met[0], other=met[1])
-        )
 
     def _move(self, move: Move, look: bool = True) -> None:
         """Adds a motion; ``look``: it is looked at whether it is free."""
@@ -353,12 +322,21 @@ class Planner:
         seconds = max(length / max(move.feed, LEAST_FEED), turn / self.turning)
         if length <= 0.0 or seconds <= 0.0 or len(way) < 2:
             return
-        fastest = np.abs(np.diff(way, axis=0)).max(axis=0) * (len(way) - 1) / seconds
-        known_of = self.arm.max_speed > 0.0
-        most = float((fastest[known_of] / self.arm.max_speed[known_of]).max(initial=0.0))
+        most = self._fastest(way, seconds)
+        if most > MAY_BE_FAST:  # near a singularity a joint turns mostly within a part
+            finer, _ = self.scenes.passes.straight_way(
+                self.at, move.frame, STEP / FINER, TURN / FINER
+            )
+            most = self._fastest(finer, seconds)
         if most > 1.0 + SLOWER:
             move.feed = length / (seconds * most)
             self.numbers["slower"] += 1
+
+    def _fastest(self, way: Floats, seconds: float) -> float:
+        """The greatest speed of a joint on a way of equally long parts, times its limit."""
+        fastest = np.abs(np.diff(way, axis=0)).max(axis=0) * (len(way) - 1) / seconds
+        limited = self.arm.max_speed > 0.0
+        return float((fastest[limited] / self.arm.max_speed[limited]).max(initial=0.0))
 
     def _look_at_corners(self) -> None:
         default = max(robot_time.limits(self.job).default_zone_mm, BLEND)

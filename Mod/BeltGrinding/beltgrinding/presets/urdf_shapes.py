@@ -59,8 +59,12 @@ def bodies(model: Json, packages: Sequence[str], wanted: tuple[str, str]) -> lis
         "urdf",
         lambda: (arm.tree.data, [read_regular(one, LIMIT) for one in meshes], dict(model), wanted),
         read,
-        lambda found: VERTEX_BYTES * sum(len(points) for points, _ in found),
+        _bytes,
     )  # fmt: skip
+
+
+def _bytes(found: list[Mesh]) -> float:
+    return float(VERTEX_BYTES * sum(len(points) for points, _ in found))
 
 
 def files(model: Json, packages: Sequence[str]) -> list[Path]:

@@ -30,6 +30,8 @@ NAMES = {
     "belt_machine.compliance.layers": "Layer",
     "robot.model": "RobotModel",
     "robot.model.joints": "Joint",
+    "robot.external_axes": "ExternalAxis",
+    "robot.load": "Load",
     "robot.program": "RobotProgram",
     "finish.model": "FinishModel",
     "finish.model.ranges": "FinishRanges",

@@ -77,10 +77,14 @@ bool ArmScene::near(const Pair& pair, const Placed& placed, double distance) con
                                       distance + pair.margin);
 }
 
-std::optional<ArmScene::Meeting> ArmScene::within(const Joints& q, double distance) const {
+std::optional<ArmScene::Meeting> ArmScene::within(const Joints& q, double distance,
+                                                  Pairs pairs) const {
     const Placed placed(*this, q);
-    for (const Pair& pair : pairs_)
+    for (const Pair& pair : pairs_) {
+        const bool of_arm = bodies_[pair.second].carrier == Carrier::kLink;
+        if (pairs != Pairs::kAll && of_arm != (pairs == Pairs::kOfArm)) continue;
         if (near(pair, placed, distance)) return Meeting{pair.first, pair.second, 0.0};
+    }
     return std::nullopt;
 }
 

@@ -13,8 +13,17 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr std::size_t kVertices = 4096;  // of a rung, about, with whole turns
 constexpr std::size_t kMostTurns = 64;
-constexpr int kSearches = 60;  // until no body is met any more
-constexpr double kSoft = 3.0;  // times the clearance: nearer begins to cost
+constexpr int kSearches = 60;    // until no body is met any more
+constexpr double kSoft = 3.0;    // times the clearance: nearer begins to cost
+constexpr double kAlike = 1e-6;  // rad, between joints that are the same but for whole turns
+
+/// Whether two solutions differ by whole turns of joints only.
+bool turned_alike(const Joints& a, const Joints& b) {
+    for (int j = 0; j < 6; ++j) {
+        if (std::abs(std::remainder(a[j] - b[j], 2.0 * M_PI)) > kAlike) return false;
+    }
+    return true;
+}
 
 }  // namespace
 
@@ -138,6 +147,7 @@ void Ladder::fill(std::size_t i) {
         }
     }
     rung.begins.push_back(static_cast<std::uint32_t>(rung.vertices.size()));
+    rung.seen.assign(samples, 0);
 }
 
 void Ladder::link(std::size_t i, const Rung* before) {
@@ -275,21 +285,56 @@ std::vector<Ladder::Step> Ladder::backward() const {
     return way;
 }
 
-void Ladder::look_at(std::size_t i, Vertex& vertex) {
-    if (vertex.seen != Seen::kNot) return;
+/// Whether a cost has changed.
+bool Ladder::look_at(std::size_t i, Vertex& vertex) {
+    const bool of_tool = look_at_tool(i, vertex);
+    return look_at_arm(i, vertex) || of_tool;
+}
+
+double Ladder::near_cost(std::size_t i, const Joints& q, ArmScene::Pairs pairs) const {
     const double clearance = options_.clearance;
-    vertex.seen = Seen::kFree;
-    if (!scene_.within(vertex.q, kSoft * clearance)) return;
-    if (const auto met = scene_.within(vertex.q, 0.0)) {
-        vertex.seen = Seen::kMet;
-        vertex.place += kMetCost;
-        vertex.first = static_cast<std::uint32_t>(met->first);
-        vertex.second = static_cast<std::uint32_t>(met->second);
-        return;
+    if (!scene_.within(q, kSoft * clearance, pairs)) return 0.0;
+    const bool nearer = scene_.within(q, clearance, pairs).has_value();
+    return times_[i] * kNearCost * (nearer ? 4.0 : 1.0);
+}
+
+/// What goes with the tool lies alike for all vertices of a sample, and costs all of them the same.
+/// Else the search would think each posture free of it until it has looked there.
+bool Ladder::look_at_tool(std::size_t i, const Vertex& vertex) {
+    Rung& rung = rungs_[i];
+    if (rung.seen[vertex.sample] != 0) return false;
+    rung.seen[vertex.sample] = 1;
+    const auto met = scene_.within(vertex.q, 0.0, ArmScene::Pairs::kOfTool);
+    const double more = met ? kMetCost : near_cost(i, vertex.q, ArmScene::Pairs::kOfTool);
+    for (std::size_t v = rung.begins[vertex.sample]; v < rung.begins[vertex.sample + 1]; ++v) {
+        Vertex& one = rung.vertices[v];
+        one.place += more;
+        if (!met) continue;
+        one.seen = Seen::kMet;
+        one.first = static_cast<std::uint32_t>(met->first);
+        one.second = static_cast<std::uint32_t>(met->second);
     }
-    vertex.seen = Seen::kNear;
-    const bool nearer = scene_.within(vertex.q, clearance).has_value();
-    vertex.place += times_[i] * kNearCost * (nearer ? 4.0 : 1.0);
+    return more > 0.0;
+}
+
+/// The links lie alike for all vertices that differ by whole turns only.
+bool Ladder::look_at_arm(std::size_t i, Vertex& vertex) {
+    if (vertex.seen != Seen::kNot) return false;
+    Rung& rung = rungs_[i];
+    const Joints q = vertex.q;
+    const auto met = scene_.within(q, 0.0, ArmScene::Pairs::kOfArm);
+    const double more = met ? kMetCost : near_cost(i, q, ArmScene::Pairs::kOfArm);
+    const Seen seen = met ? Seen::kMet : (more > 0.0 ? Seen::kNear : Seen::kFree);
+    for (std::size_t v = rung.begins[vertex.sample]; v < rung.begins[vertex.sample + 1]; ++v) {
+        Vertex& one = rung.vertices[v];
+        if (one.seen != Seen::kNot || !turned_alike(one.q, q)) continue;
+        one.seen = seen;
+        one.place += more;
+        if (!met) continue;
+        one.first = static_cast<std::uint32_t>(met->first);
+        one.second = static_cast<std::uint32_t>(met->second);
+    }
+    return more > 0.0;
 }
 
 /// Looks at the way's bodies; where one meets, at all samples of that configuration too. Whether
@@ -303,9 +348,7 @@ bool Ladder::look(const std::vector<Step>& way, const RunContext& context) {
         for (std::size_t n = k; n < way.size() && way[n].rung == step.rung; ++n) {
             Rung& rung = rungs_[step.rung];
             Vertex& vertex = rung.vertices[static_cast<std::size_t>(way[n].vertex)];
-            if (vertex.seen != Seen::kNot) continue;
-            look_at(step.rung, vertex);
-            if (vertex.seen == Seen::kFree) continue;
+            if (!look_at(step.rung, vertex)) continue;
             changed[k] = 1;
             if (vertex.seen != Seen::kMet) continue;
             for (Vertex& other : rung.vertices)

@@ -41,6 +41,7 @@ struct Rung {
     Window window;
     std::vector<Vertex> vertices;       ///< in the order of their samples
     std::vector<std::uint32_t> begins;  ///< of each sample's vertices, and the end
+    std::vector<std::uint8_t> seen;     ///< of each sample: what goes with the tool was looked at
     std::array<int, 3> steps{};         ///< samples that may lie between it and the rung before
     bool begins_pass = false;
     bool torn = false;    ///< no way leads here from the rung before
@@ -77,7 +78,10 @@ class Ladder {
     void cut(std::size_t i);
     std::vector<Step> backward() const;
     bool look(const std::vector<Step>& way, const RunContext& context);
-    void look_at(std::size_t i, Vertex& vertex);
+    bool look_at(std::size_t i, Vertex& vertex);
+    bool look_at_tool(std::size_t i, const Vertex& vertex);
+    bool look_at_arm(std::size_t i, Vertex& vertex);
+    double near_cost(std::size_t i, const Joints& q, ArmScene::Pairs pairs) const;
 
     const ArmScene& scene_;
     const std::vector<PassPose>& poses_;

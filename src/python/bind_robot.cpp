@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <limits>
 
 #include "collision/collision_check.h"
@@ -89,6 +90,7 @@ py::dict reach(const RobotArm& arm, const ToolPath& path, const py::dict& option
     o.max_angle = take(d, "max_angle", o.max_angle);
     o.singularity = take(d, "singularity", o.singularity);
     o.flip = take(d, "flip", o.flip);
+    o.turn_speed = take(d, "turn_speed", o.turn_speed);
     if (d.contains("start")) o.start = take(d, "start", Joints(Joints::Zero()));
     refuse_rest(d, "reach options");
     ReachResult result;
@@ -170,6 +172,13 @@ void bind_robot(py::module_& m) {
             },
             py::arg("q"), "Which of its configurations it is in; see ArmConfiguration.")
         .def_property_readonly("max_speed", [](const RobotArm& arm) { return arm.max_speed(); })
+        .def(
+            "singular_distance",
+            [](const RobotArm& arm, const Joints& q) {
+                const SingularDistance d = singular_distance(arm, q);
+                return std::min({d.wrist, d.elbow, d.shoulder, d.general});
+            },
+            py::arg("q"), "rad to the nearest singularity; see SingularDistance.")
         .def("jacobian", &RobotArm::jacobian, py::arg("q"),
              "(6, 6): velocity of the flange (mm) and angular velocity per joint speed")
         .def(

@@ -37,6 +37,9 @@ MeshBytes read_by_assimp(const std::string& path) {
                                      aiComponent_NORMALS | aiComponent_COLORS |
                                          aiComponent_TEXCOORDS |
                                          aiComponent_TANGENTS_AND_BITANGENTS);
+        // A robot's meshes (DAE) are used as they lie, whichever axis their file calls up, as RViz
+        // does.
+        importer->SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
         scene = importer->ReadFile(
             path, aiProcess_RemoveComponent | aiProcess_Triangulate | aiProcess_SortByPType |
                       aiProcess_JoinIdenticalVertices | aiProcess_PreTransformVertices);

@@ -15,12 +15,8 @@ namespace {
 constexpr double kDegrees = 180.0 / M_PI;
 constexpr double kSpeedTolerance = 1e-6;  // relative
 constexpr double kLimitTolerance = 1e-9;  // rad
-// rad/s; controllers hold the tool's turning below a speed of its own, whatever the feed. Below
-// their defaults (some 200 deg/s and more), so that a mere turn about the flange's axis is no
-// event.
-constexpr double kTurnSpeed = M_PI;
-constexpr int kWristJoint = 3;      // joints 4 to 6 are the wrist's
-constexpr double kFarAngle = 1e-3;  // rad; less is no matter of orientation
+constexpr int kWristJoint = 3;            // joints 4 to 6 are the wrist's
+constexpr double kFarAngle = 1e-3;        // rad; less is no matter of orientation
 
 class Check {
   public:
@@ -180,7 +176,7 @@ class Check {
             note(first == 0 ? "arm_flip" : "wrist_flip", kDegrees * std::abs(turned[worst]),
                  kDegrees * options_.flip, {fact});
         }
-        const double time = std::max(step_.duration, turn / kTurnSpeed);
+        const double time = std::max(step_.duration, turn / options_.turn_speed);
         if (time <= 0.0) return;
         for (int j = 0; j < 6; ++j) {
             const double limit = arm_.max_speed()[j];
@@ -242,9 +238,11 @@ class Check {
 ReachResult check_reach(const ToolPath& path, const RobotArm& arm, const ReachOptions& options,
                         const RunContext& context) {
     if (!(options.max_travel > 0.0) || !(options.max_angle > 0.0) || !(options.flip > 0.0) ||
-        !(options.singularity >= 0.0)) {
-        throw InputError("reach.steps",
-                         "reach: travel and angle between checks and the flip must be positive");
+        !(options.singularity >= 0.0) || !(options.turn_speed > 0.0)) {
+        throw InputError(
+            "reach.steps",
+            "reach: travel and angle between checks, the flip and the speed of turning "
+            "must be positive");
     }
     if (options.start && !options.start->allFinite()) {
         throw InputError("reach.start", "reach: the joints at the start are not finite");

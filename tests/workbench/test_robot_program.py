@@ -10,18 +10,28 @@ import pytest
 import PyKDL
 from test_collision import brep
 from test_raster import X, job_of, plate
+from test_robot import pose_row
 
 from beltgrinding.base import frames
 from beltgrinding.cli import robot_program as command
-from beltgrinding.engine import InputError
+from beltgrinding.engine import InputError, core
 from beltgrinding.job import load as jobs, poses
+from beltgrinding.job.workpiece import read_design
 from beltgrinding.planning import commands, rounds
-from beltgrinding.presets import library
+from beltgrinding.presets import library, robot as robots
 from beltgrinding.programs.registry import read_program
 from beltgrinding.programs.writers import fanuc, krl, rapid
 from beltgrinding.programs.program import Posture
 from beltgrinding.raster import raster_path as raster
-from beltgrinding.robot_program import passes, scenes, whole as wholes, write as writing
+from beltgrinding.robot_program import (
+    corners,
+    lifts,
+    linking,
+    passes,
+    scenes,
+    whole as wholes,
+    write as writing,
+)
 from beltgrinding.job.typed import typed
 from support.freecad import ROOT
 
@@ -440,7 +450,7 @@ def test_a_pass_that_no_posture_does_is_cut_and_told(laid):
 
 def test_a_link_goes_by_a_safe_place_where_no_direct_way_is_found(laid, monkeypatch):
     safe = [20.0, -100.0, 100.0, 0.0, 60.0, 0.0]
-    direct = wholes.Planner._way
+    direct = linking.Linker._way
     home = np.radians(HOME)
 
     def way(self, begin, end):
@@ -448,9 +458,138 @@ def test_a_link_goes_by_a_safe_place_where_no_direct_way_is_found(laid, monkeypa
             return None
         return direct(self, begin, end)
 
-    monkeypatch.setattr(wholes.Planner, "_way", way)
+    monkeypatch.setattr(linking.Linker, "_way", way)
     whole = writing.plan_job(cell(laid=laid, safe_joints_deg=[safe]))
     assert not whole.problems
     assert whole.moves[1].joints_deg == pytest.approx(safe)
     whole = writing.plan_job(cell(laid=laid))
     assert [fact.code for fact in whole.problems] == ["robot_program.no_link"]
+
+
+def test_links_lift_the_wheel_off_the_part_before_a_search(laid):
+    """A wall between two passes: the way over it goes off the part, across and down, with the least lift that does."""
+    wall = {"name": "wall", "frame": "part", "brep": brep([-20, 28, 1], [120, 32, 25])}
+    job = typed(cell(laid=laid))
+    planner = wholes.Planner(job, 0, read_design(job.design), core.RunContext())
+    of = planner.scenes
+    ends = [np.radians(m.joints_deg) for m in writing.plan_job(job).moves if m.note.startswith("pass")]  # fmt: skip
+    ends = [ends[0], ends[-1]]
+    near = typed(cell(laid=laid, bodies=[wall]))
+    scene = wholes.Planner(near, 0, read_design(near.design), core.RunContext()).scenes.links
+    off = lifts.off_the_part(scene, near.cell)
+    a, b = (of.links.base_from_tcp(q) for q in ends)
+    assert abs(a[1, 3] - b[1, 3]) > 35  # on both sides of it
+    both, clearance = (off, off), near.robot.program.clearance_mm
+    found = lifts.link(scene, (ends[0], ends[1]), both, 30.0, clearance, 0.5)
+    way = found["joints"]
+    assert len(way) == 4 and not found["straight"] and found["clearance"] == clearance
+    for p, q in zip(way[:-1], way[1:]):
+        for share in np.linspace(0, 1, 200):
+            assert scene.within(p + share * (q - p), 0.9 * clearance) is None
+    begin, lifted = (scene.base_from_tcp(q) for q in way[:2])
+    rise = lifted[:3, 3] - begin[:3, 3]
+    assert np.abs(rise - [0, 0, rise[2]]).max() < 1e-6  # along the plate's normal
+    share = rise[2] / 30.0
+    assert any(share == pytest.approx(one, abs=1e-6) for one in lifts.SHARES)
+    for less in (one for one in lifts.SHARES if 0 < one < share - 1e-6):
+        lower = [off(q, 30.0 * less) for q in (ends[0], ends[1])]
+        assert scene.on_way(*lower, clearance, 0.5) is not None
+    # An end that stays where it is.
+    home = planner.home
+    way = lifts.link(scene, (home, ends[0]), (None, off), 30.0, clearance, 0.5)["joints"]
+    assert (way[0] == home).all() and len(way) <= 3
+    assert planner.linker._off(home) is None and planner.linker._off(ends[0]) is not None
+
+
+def test_a_corner_that_the_controller_rounds_is_looked_at(laid):
+    """A pin inside of a corner: both straight ways are clear of it, the arc is not, until its zone is smaller."""
+    down = np.eye(4)
+    down[:3, :3] = np.diag([1.0, -1.0, -1.0])
+    frames_of = []
+    for x, z in ((0, 140), (0, 60), (80, 60)):
+        frame = down.copy()
+        frame[:3, 3] = x + 20, 30, z
+        frames_of.append(frame)
+    listed = [
+        {**pose_row(frame), "feed_mm_s": 40.0, "rapid": k == 0} for k, frame in enumerate(frames_of)
+    ]
+    # A rod that the tool carries to the side; the pin lies 10 mm beside both of its ways.
+    rod = {"name": "rod", "frame": "tool", "brep": brep([-1, -61, -1], [1, -59, 1])}
+    pin = {"name": "pin", "frame": "base", "brep": brep([29, 85, 69], [31, 95, 71])}
+    found = {}
+    for zone in (0.0, 4.0, 40.0):
+        job = {**cell(laid=laid, bodies=[rod, pin]), "programs": [{"name": "corner", "poses": [{**one, "zone_mm": zone} for one in listed], "unresolved": 0}]}  # fmt: skip
+        found[zone] = [fact.code for fact in writing.plan_job(jobs.validate(job)).problems]
+    assert found == {0.0: [], 4.0: [], 40.0: ["robot_program.corner_meets"]}
+
+
+def test_arcs_lie_between_the_ways_beside_their_corner():
+    a, b, c = np.eye(4), np.eye(4), np.eye(4)
+    b[0, 3], c[:2, 3] = 10, (10, 8)
+    moves = [wholes.Move(kind, one, np.zeros(6), zone=zone) for kind, one, zone in (("PTP", a, 0), ("LIN", b, 100), ("LIN", c, 2))]  # fmt: skip
+    ((move, places),) = corners.rounded(moves, 1.0)
+    assert move is moves[1]
+    points = np.array([one[:3, 3] for one in places])
+    assert points[0] == pytest.approx([6, 0, 0]) and points[-1] == pytest.approx([10, 4, 0])
+    assert points[len(points) // 2] == pytest.approx([9, 1, 0])  # a parabola's middle
+    moves[1].zone = 0.0
+    assert not list(corners.rounded(moves, 1.0))
+    moves[1].zone = -1.0
+    ((_, places),) = corners.rounded(moves, 1.0)
+    assert places[0][:3, 3] == pytest.approx([9, 0, 0])
+
+
+@pytest.mark.parametrize(
+    "name, robot, home, line",
+    [
+        ("w.src", KUKA, HOME, "$LOAD={M 12.5,CM {X 0,Y -4,Z 80.5,A 0,B 0,C 0},J {X 0.1,Y 0.2,Z 0.3}}"),
+        ("w.mod", ABB, [60, 0, 0, 0, 60, 0], ",[12.5,[0,-4,80.5],[1,0,0,0],0.1,0.2,0.3]];"),
+        ("w.script", KUKA, HOME, "set_target_payload(12.5, [0, -0.004, 0.0805], [0.1, 0.2, 0.3, 0, 0, 0])"),
+        ("w.ls", FANUC, [60, 0, 0, 0, -60, 0], "load of the flange: 12.5 kg at 0, -4, 80.5 mm"),
+    ],
+)  # fmt: skip
+def test_programs_set_the_load_of_the_flange(name, robot, home, line, laid, tmp_path):
+    load = {"mass_kg": 12.5, "centre_mm": [0, -4, 80.5], "inertia_kg_m2": [0.1, 0.2, 0.3]}
+    job, file = cell({**robot, "load": load}, laid=laid, home_joints_deg=home), tmp_path / name
+    whole = writing.plan_job(job)
+    given = {"tools": "3", "bases": "5"} if name == "w.ls" else {}
+    writing.write(file, job, whole, **given)  # and reads it again
+    text = file.read_text()
+    assert line in re.sub(
+        r"\s+", " ", re.sub(r";\n +\d+:!", " ", text)
+    )  # Fanuc's comments are short
+    assert "Enter its load" not in text
+    none = tmp_path / f"none_{name}"
+    writing.write(none, cell(robot, laid=laid, home_joints_deg=home), whole, **given)
+    assert line not in none.read_text()
+
+
+def test_no_joint_is_too_fast_between_two_poses():
+    """A motion straight past axis 1 turns it most in its middle: on the mean from pose to pose it is slow."""
+    made = [np.eye(4), np.eye(4)]
+    for frame, y in zip(made, (-300.0, 300.0)):
+        frame[:3, :3] = np.diag([1.0, -1.0, -1.0])
+        frame[:3, 3] = (100, y, 0)
+    listed = [{**pose_row(frame), "feed_mm_s": 1400.0, "rapid": k == 0} for k, frame in enumerate(made)]  # fmt: skip
+    robot = {**KUKA, "base_from_robot": {"position_mm": [0, 0, -500]}, "flip_deg": 175}
+    job = cell(robot)
+    job = jobs.validate({**job, "cell": {**job["cell"], "check_collisions": False}, "programs": [{"name": "past", "poses": listed, "unresolved": 0}]})  # fmt: skip
+    whole = writing.plan_job(job)
+    assert not whole.problems, [str(one) for one in whole.problems]
+    moves = [one for one in whole.moves if one.kind == "LIN"]
+    arm = robots.arm_of(job["robot"])
+    base, tool = (robots.robot_frame(job["robot"], key) for key in ("base_from_robot", "flange_from_tcp"))  # fmt: skip
+    fastest = 0.0
+    for before, move in zip(whole.moves[:-1], whole.moves[1:]):
+        if move.kind != "LIN":
+            continue
+        q, count = np.radians(before.joints_deg), 2000
+        seconds = np.linalg.norm(move.frame[:3, 3] - before.frame[:3, 3]) / move.feed
+        for k in range(1, count + 1):
+            place = before.frame + (move.frame - before.frame) * k / count  # it does not turn
+            rows = arm.inverse(np.linalg.inv(base) @ place @ np.linalg.inv(tool), q)
+            after = rows[np.argmin(np.abs(rows - q).max(axis=1))]
+            fastest = max(fastest, (np.abs(after - q) * count / seconds / arm.max_speed).max())
+            q = after
+    assert 0.8 < fastest < 1.02
+    assert min(one.feed for one in moves) < 900 and whole.figures["slower"] > 0

@@ -293,6 +293,33 @@ TEST(Posture, AHitThatNothingAvoidsIsTold) {
     EXPECT_EQ(scene.bodies()[found.poses.back().first].name, "wall");
 }
 
+TEST(Posture, AToolThatIsAlwaysNearWindsNothingUp) {
+    const RobotArm arm(testing::parallel_arm());  // whole turns of all joints
+    std::vector<CollisionBody> bodies(2);
+    bodies[0].name = "work";
+    bodies[0].mesh = testing::box({300, -200, 90}, {600, 300, 100});
+    bodies[1].name = "hub";
+    bodies[1].carrier = Carrier::kTool;
+    bodies[1].mesh = testing::box({-20, -20, 0}, {20, 20, 100});  // 1 mm above the work
+    PostureOptions options = options_for(arm);
+    options.home = degrees(0, -90, -90, -90, 90, 0);
+    std::vector<PassPose> poses;
+    for (int k = 0; k < 8; ++k) {
+        const double y = -100.0 + 25.0 * k;
+        const auto one = pass(placed(350, y, 201, M_PI, 0.1), placed(500, y, 201, M_PI, 0.1), 5);
+        poses.insert(poses.end(), one.begin(), one.end());
+    }
+    const PostureResult near =
+        find_postures(ArmScene({arm}, tool_in_hand(), bodies), poses, options);
+    const PostureResult open = find_postures(ArmScene({arm}, tool_in_hand(), {}), poses, options);
+    ASSERT_EQ(near.poses.size(), open.poses.size());
+    for (std::size_t n = 0; n < near.poses.size(); ++n) {
+        EXPECT_FALSE(near.poses[n].meets);
+        EXPECT_LT((near.poses[n].q - open.poses[n].q).cwiseAbs().maxCoeff(), 1e-9) << n;
+    }
+    EXPECT_NEAR(near.cost.travel, open.cost.travel, 1e-9);
+}
+
 TEST(Posture, DurationsKeepToSpeedsAndAccelerations) {
     const RobotArm arm(testing::wrist_arm());
     const ArmScene scene({arm}, tool_in_hand(), {});

@@ -95,6 +95,19 @@ def rotation_vectors(rotations: ArrayLike) -> NDArray[np.float64]:
     return np.asarray(quaternions[:, 1:] * factors[:, None])
 
 
+def rotation(vector: ArrayLike) -> NDArray[np.float64]:
+    """3 x 3 of an axis times angle in radian (Rodrigues' formula)."""
+    turn = np.asarray(vector, dtype=float)
+    angle = float(np.linalg.norm(turn))
+    if angle < 1e-15:
+        return np.eye(3)
+    cross = np.cross(np.eye(3), turn / angle)  # times a vector: axis x vector
+    found: NDArray[np.float64] = (
+        np.eye(3) + math.sin(angle) * cross + (1.0 - math.cos(angle)) * cross @ cross
+    )
+    return found
+
+
 def from_abc(position: Iterable[float], abc_deg: Iterable[float]) -> NDArray[np.float64]:
     """4 x 4 from a position in mm and KUKA's A, B, C in degrees: Rz(A) Ry(B) Rx(C)."""
     a, b, c = (math.radians(angle) for angle in abc_deg)

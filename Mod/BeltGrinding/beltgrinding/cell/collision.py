@@ -133,8 +133,12 @@ def bodies(
             found.append({"name": WHEEL, "frame": "wheel", "mesh": disc})
     for name, mesh in machine_bodies(machine):
         found.append({"name": name, "frame": "wheel", "mesh": mesh})
+    standing = robots.standing(records.plain(job.robot))
     for body in job.cell.bodies:
         mesh = read_body(body, body.name, warnings, context)
+        if body.frame == "base" and not np.array_equal(standing, np.eye(4)):
+            points = mesh.vertices @ standing[:3, :3].T + standing[:3, 3]
+            mesh = core.TriangleMesh(points.astype(np.float32), mesh.triangles)
         found.append({"name": body.name, "frame": body.frame, "mesh": mesh})
     return found
 

@@ -14,6 +14,7 @@ import numpy as np
 from ..base import kept, records
 from ..base.kinds import Array, Context, Json, known
 from ..engine import InputError
+from ..job import robot_time
 from ..job.settings import Job, Simulation
 from ..job.typed import typed
 from ..presets.robot import arm_of, checked, given, model_of, name, robot_frame
@@ -40,10 +41,12 @@ def reach(
     max_travel_mm: float = 1.0,
     max_angle_deg: float = 1.0,
     context: Context = None,
+    turn_speed_deg_s: float | None = None,
 ) -> dict[str, Any]:
     """What the joints do along a core.ToolPath.
 
-    ``robot``: as in a job, or a preset's id. Returns dict(joints (n, 6) in degrees, one row per
+    ``robot``: as in a job, or a preset's id. ``turn_speed_deg_s``: at which the controller turns the tool at most, None:
+    that of the robot's controller. Returns dict(joints (n, 6) in degrees, one row per
     pose, NaN where the robot does not get; events, as a simulation has them; least, greatest (6,)
     in degrees; checks: how many places were looked at). Raises InputError, Cancelled.
     """
@@ -54,20 +57,37 @@ def reach(
             "{key}: give a preset or a model; without one its reach is not known",
             key="robot",
         )
-    options = {
-        "base_from_robot": robot_frame(wanted, "base_from_robot"),
-        "flange_from_tcp": robot_frame(wanted, "flange_from_tcp"),
-        "max_travel": float(max_travel_mm),
-        "max_angle": math.radians(max_angle_deg),
-        "singularity": math.radians(wanted["singularity_deg"]),
-        "flip": math.radians(wanted["flip_deg"]),
-    }
-    if wanted["start_joints_deg"]:
-        options["start"] = np.radians(np.array(wanted["start_joints_deg"], dtype=float))
-    found = known(arm_of(wanted)).reach(path, options, context=context)
+    turning = turn_speed_deg_s or robot_time.turn_speed(wanted["controller"])
+    found = follow(
+        known(arm_of(wanted)), path, wanted, max_travel_mm, max_angle_deg, turning, context
+    )
     for key in ("joints", "least", "greatest"):
         found[key] = np.degrees(found[key])
     return found
+
+
+def follow(
+    arm: core.RobotArm,
+    path: core.ToolPath,
+    robot: Json,
+    max_travel_mm: float,
+    max_angle_deg: float,
+    turn_speed_deg_s: float,
+    context: Context = None,
+) -> dict[str, Any]:
+    """As ``reach``, but in radian, by the arm of a robot that has all its defaults."""
+    options = {
+        "base_from_robot": robot_frame(robot, "base_from_robot"),
+        "flange_from_tcp": robot_frame(robot, "flange_from_tcp"),
+        "max_travel": float(max_travel_mm),
+        "max_angle": math.radians(max_angle_deg),
+        "singularity": math.radians(robot["singularity_deg"]),
+        "flip": math.radians(robot["flip_deg"]),
+        "turn_speed": math.radians(turn_speed_deg_s),
+    }
+    if robot["start_joints_deg"]:
+        options["start"] = np.radians(np.array(robot["start_joints_deg"], dtype=float))
+    return arm.reach(path, options, context=context)
 
 
 def job_reach(
@@ -79,22 +99,20 @@ def job_reach(
     robot = records.plain(job.robot)
     if not given(robot):
         return []
-    return [_kept_reach(path, robot, job.simulation, context) for path in paths]
+    turning = robot_time.limits(job).rotation_speed_deg_s
+    return [_kept_reach(path, robot, job.simulation, turning, context) for path in paths]
 
 
 def _kept_reach(
-    path: core.ToolPath, robot: Json, steps: Simulation, context: Context
+    path: core.ToolPath, robot: Json, steps: Simulation, turning: float, context: Context
 ) -> dict[str, Any]:
     wanted = robot, steps.max_travel_mm, steps.max_angle_deg
+    look = lambda: reach(path, *wanted, context, turning)
     timed, _ = tool_path.digests(path)
     if timed is None:
-        return reach(path, *wanted, context)
-    found = kept.get(
-        "reach",
-        lambda: (timed, wanted, model_of(robot)),
-        lambda: reach(path, *wanted, context),
-        _found_bytes,
-    )
+        return look()
+    parts = lambda: (timed, wanted, turning, model_of(robot))
+    found = kept.get("reach", parts, look, _found_bytes)
     return {**found, "events": copy.deepcopy(found["events"])}
 
 

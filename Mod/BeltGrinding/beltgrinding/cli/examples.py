@@ -58,6 +58,7 @@ EXAMPLES = {
         "reach job.json -o joints.csv",
         "reach job.json -o joints.csv --force",
         "reach job.json --all",
+        "reach job.json --place -o map.csv",
     ),
     "contact": (
         "contact contact.json",

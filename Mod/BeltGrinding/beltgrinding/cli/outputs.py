@@ -10,6 +10,8 @@ HEAD = 4096  # bytes
 BEGINNINGS = (
     b"index,motion,x_mm,y_mm,z_mm,qw,",  # program
     b"program,pose,line,j1_deg,",  # reach
+    b"distance_mm,azimuth_deg,",  # reach --place
+    b"E1,",  # the same of external axes
     b"piece,face,s_mm,",  # section
     b"x_mm,y_mm,p_MPa",  # contact
     b"line,predicted,standard_deviation,",  # predict

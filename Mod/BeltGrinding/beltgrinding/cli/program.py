@@ -106,7 +106,14 @@ def add(commands):
     raster.set_defaults(do=_raster)
     reach = commands.add_parser("reach", help="follow a job's programs with its robot's joints")
     reach.add_argument("job", help="job.json")
-    reach.add_argument("-o", "--output", help="CSV for the joints at every pose")
+    reach.add_argument(
+        "-o", "--output", help="CSV for the joints at every pose; of --place, the map"
+    )
+    reach.add_argument(
+        "--place",
+        action="store_true",
+        help="search where the robot, or its external axes, reach the whole program farthest from limits and singularities",
+    )
     outputs.add(reach)
     reach.set_defaults(do=_reach)
 
@@ -354,6 +361,24 @@ def _write_raster(arguments, file, job, found):
     arguments.messages.print_written(notes)
 
 
+def _place(arguments, job):
+    """Where the job's robot stands best, as keys of its robot."""
+    from ..base.files import cannot_be_written, write_whole
+    from ..cell import placing
+
+    def search(context):
+        made = placing.Search(job, context)
+        return made, *made.run()
+
+    made, place, events = background.run(search)
+    if arguments.output:
+        try:
+            write_whole(Path(arguments.output), placing.map_csv(made).encode())
+        except OSError as error:
+            raise cannot_be_written(arguments.output, error) from None
+    print(json.dumps(placing.told(made, place, events), indent=2, allow_nan=False))
+
+
 def _reach(arguments):
     from ..base.files import cannot_be_written, write_whole
     from ..cell import events as event_lists, reach, tool_path as tool_paths
@@ -371,6 +396,9 @@ def _reach(arguments):
             file=arguments.job,
             key="robot",
         )
+    if arguments.place:
+        _place(arguments, given)
+        return
     warnings = []
     paths = [tool_paths.tool_path(given, i, warnings) for i in range(len(given["programs"]))]
     found = reach.job_reach(given, paths)

@@ -42,21 +42,23 @@ def write(arguments, files):
     check_suffix(arguments.output)
     job = jobs.load(files[0])
     outputs.check(arguments, [arguments.output], [files[0], *inputs.files(job)])
+    given = {"form": arguments.form, **frames_options.given(arguments)}
+    whole, notes = _planned(arguments.output, job, arguments, **given)
+    arguments.messages.print_written(notes)
+    print(json.dumps(writing.summary(whole), indent=2, allow_nan=False))
+
+
+def _planned(file, job, arguments, **options):
+    """Plans the program of a job and writes it: (``Whole``, what the writer tells). Raises InputError."""
+    from ..base.files import cannot_be_written
+    from ..robot_program import write as writing
+
     whole = background.run(lambda context: writing.plan_job(job, context), quiet=True)
     arguments.messages.print_warnings([*whole.notes, *whole.problems])
     try:
-        notes = writing.write(
-            arguments.output,
-            job,
-            whole,
-            form=arguments.form,
-            unsafe=arguments.unsafe,
-            **frames_options.given(arguments),
-        )
+        return whole, writing.write(file, job, whole, unsafe=arguments.unsafe, **options)
     except OSError as error:
-        raise cannot_be_written(arguments.output, error) from None
-    arguments.messages.print_written(notes)
-    print(json.dumps(writing.summary(whole), indent=2, allow_nan=False))
+        raise cannot_be_written(file, error) from None
 
 
 def wanted(job):
@@ -70,12 +72,9 @@ def in_place_of(file, job, arguments):
     """Writes the program for the whole robot over that of the passes alone, and returns what the writer tells. Where it
     is refused the other goes, too: it has the same collisions. Raises InputError."""
     from ..engine import InputError
-    from ..robot_program import write as writing
 
-    whole = background.run(lambda context: writing.plan_job(job, context), quiet=True)
-    arguments.messages.print_warnings([*whole.notes, *whole.problems])
     try:
-        return writing.write(file, job, whole, form=arguments.form, unsafe=arguments.unsafe)
+        return _planned(file, job, arguments, form=arguments.form)[1]
     except InputError:
         file.unlink()
         raise
@@ -86,20 +85,11 @@ def beside(folder, names, job, arguments):
     (``names``). Returns its file, None for a job without a home. Raises InputError."""
     from pathlib import Path
 
-    from ..base.files import cannot_be_written
-    from ..robot_program import write as writing
-
     if not wanted(job):
         return None
     suffixes = [Path(name).suffix.lower() for name in names]
     suffix = next((one for one in suffixes if one in LANGUAGES), LANGUAGES[0])
     file = Path(folder, NAME + suffix)
     outputs.check(arguments, [file])
-    whole = background.run(lambda context: writing.plan_job(job, context), quiet=True)
-    arguments.messages.print_warnings([*whole.notes, *whole.problems])
-    try:
-        notes = writing.write(file, job, whole, unsafe=arguments.unsafe)
-    except OSError as error:
-        raise cannot_be_written(file, error) from None
-    arguments.messages.print_written(notes)
+    arguments.messages.print_written(_planned(file, job, arguments)[1])
     return file

@@ -12,6 +12,7 @@ from typing import Any
 from ..base.kinds import Json
 from ..base.regular_files import open_regular
 from ..engine import InputError
+from ..presets import urdf_shapes
 
 BESIDE = (".dat", ".dtx", ".pgx", ".pjx")  # files of a robot program's name that are read with it
 CHUNK = 1 << 20  # bytes
@@ -55,6 +56,10 @@ def _inputs(job: Json) -> Iterator[tuple[str, Path | None, Any]]:
                 yield f"programs[{i}]", path, None
         else:
             yield f"programs[{i}].poses", None, program["poses"]
+    robot = job["robot"]
+    if robot["model"]["urdf"]:
+        for path in urdf_shapes.files(robot["model"], robot["packages"]):
+            yield "robot.model.urdf", path, None
     surrogate = job["belt_machine"]["compliance"]["surrogate_file"]
     if surrogate:
         yield "belt_machine.compliance.surrogate_file", Path(surrogate), None

@@ -12,7 +12,7 @@ from ..base import schemas
 from ..base.files import absolute, in_file
 from ..base.kinds import Json
 from ..engine import InputError
-from ..presets import robot as robots
+from ..presets import external_axes, robot as robots
 from . import bodies as job_bodies, machine
 from .law import check_calibration
 from .tolerances import check_zones
@@ -66,7 +66,8 @@ def validate(job: Json, folder: Path | str = ".") -> dict[str, Any]:
 
 def _complete(job: dict[str, Any], folder: Path | str) -> None:
     """Fills in what the schema cannot say, and refuses what it cannot refuse."""
-    for holder in [job["design"], job["stock"], *job["programs"], *job["cell"]["bodies"]]:
+    cell, robot = job["cell"], job["robot"]
+    for holder in [job["design"], job["stock"], *job["programs"], *cell["bodies"]]:
         if "file" in holder:
             holder["file"] = absolute(folder, holder["file"])
     for i, program in enumerate(job["programs"]):
@@ -109,8 +110,12 @@ def _complete(job: dict[str, Any], folder: Path | str) -> None:
             key="stock",
         )
     more = job_bodies.OF_KIND.get(machine.kind(job["belt_machine"]), ())
-    job_bodies.validate(job["cell"]["bodies"], more)
-    robots.validate(job["robot"])
+    job_bodies.validate(cell["bodies"], more)
+    if robot["model"]["urdf"]:
+        robot["model"]["urdf"] = absolute(folder, robot["model"]["urdf"])
+    robot["packages"] = [absolute(folder, one) for one in robot["packages"]]
+    robots.validate(robot)
+    external_axes.refuse_held(robot["external_axes"], cell["holding"])
     lower, upper = job["inspection"]["tolerance_mm"]
     if lower > upper:
         raise InputError(

@@ -81,6 +81,12 @@ def limits(job: Job | Json) -> Limits:
     )
 
 
+def turn_speed(controller: str) -> float:
+    """degrees/s at which a controller (a preset's id, "": the common one) turns the tool at most. Raises InputError."""
+    numbers = library.numbers(library.find("controllers", controller or COMMON))
+    return library.middle(numbers["rotation_speed"])
+
+
 def form(job: Job | Json, given: str = "") -> str:
     """How passes that were laid or planned for a job are written, as ``write_program`` takes it: as its controller
     follows them, unless a form is given. Raises InputError for a controller that is not there."""

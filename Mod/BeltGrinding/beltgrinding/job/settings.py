@@ -366,6 +366,33 @@ class RobotModel:
     joint6_from_flange: Frame | None = None
     coupling: Literal[0, 1, -1]
     floor_mm: float
+    urdf: str
+    base_link: str
+    tip_link: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Load:
+    """``robot.load`` of a job."""
+
+    mass_kg: float
+    centre_mm: tuple[float, float, float]
+    inertia_kg_m2: tuple[float, float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExternalAxis:
+    """``robot.external_axes`` of a job."""
+
+    kind: Literal["linear", "rotary"]
+    carries: Literal["robot", "part"]
+    origin_mm: tuple[float, float, float]
+    axis: tuple[float, float, float]
+    lower: float
+    upper: float
+    max_speed: float
+    home: float
+    position: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -393,6 +420,9 @@ class Robot:
     controller: str
     preset: str
     model: RobotModel
+    packages: tuple[str, ...]
+    load: Load
+    external_axes: tuple[ExternalAxis, ...]
     base_from_robot: Frame | None = None
     flange_from_tcp: Frame | None = None
     program: RobotProgram

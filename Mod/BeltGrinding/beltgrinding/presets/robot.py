@@ -6,6 +6,7 @@ Joint angles are in degrees; frames are 4 x 4 in mm.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,11 +16,13 @@ from ..base.files import at_key
 from ..base.kinds import Floats, Json
 from ..engine import InputError
 from ..geometry.body_names import LINKS
-from . import library, robot_shape
-from .robot_model import JOINTS, arm, robot_rules, validate_model
+from . import external_axes, library, robot_shape, urdf, urdf_shapes
+from .robot_model import JOINTS, arm, checked_model, robot_rules, validate_model
 
 if TYPE_CHECKING:
     from ..engine import core
+
+BASE = "base_from_robot"
 
 
 def checked(robot: Json) -> dict[str, Any]:
@@ -32,11 +35,17 @@ def checked(robot: Json) -> dict[str, Any]:
 def validate(robot: Json) -> None:
     """Raises InputError for what the schema cannot say of a robot with all its defaults."""
     model = robot["model"]
-    if robot["preset"] and model["joints"]:
+    if robot["preset"] and (model["joints"] or model["urdf"]):
         raise InputError(
             "presets.preset_and_model",
             "{key}: give a preset or a model with joints, not both",
             key="robot",
+        )
+    if model["joints"] and model["urdf"]:
+        raise InputError(
+            "presets.joints_and_urdf",
+            "{key}: give joints or a URDF, not both",
+            key="robot.model",
         )
     if len(robot["start_joints_deg"]) not in (0, JOINTS):
         raise InputError(
@@ -64,7 +73,19 @@ def validate(robot: Json) -> None:
         load_preset(robot["preset"])
     if robot["controller"]:
         library.find("controllers", robot["controller"])
+    external_axes.validate(robot["external_axes"])
+    if model["urdf"]:
+        _check_urdf(robot)
     validate_model(model)
+
+
+def _check_urdf(robot: Json) -> None:
+    """Raises InputError for a file that is no arm, or a mesh that is not there."""
+    try:
+        arm(model_of(robot))
+        urdf_shapes.files(robot["model"], robot["packages"])
+    except InputError as error:
+        raise at_key(error, "robot.model.urdf") from None
 
 
 def load_preset(name: str) -> dict[str, Any]:
@@ -74,11 +95,13 @@ def load_preset(name: str) -> dict[str, Any]:
 
 def given(robot: Json) -> bool:
     """Whether a job's robot (with defaults) is one, whose reach is to be checked."""
-    return bool(robot["preset"] or robot["model"]["joints"])
+    return bool(robot["preset"] or robot["model"]["joints"] or robot["model"]["urdf"])
 
 
 def name(robot: Json) -> str:
     """How the robot is called; "" for none."""
+    if robot["model"]["urdf"]:
+        return Path(robot["model"]["urdf"]).stem
     return robot["preset"] or ("own model" if robot["model"]["joints"] else "")
 
 
@@ -88,22 +111,50 @@ def arm_of(robot: Json) -> core.RobotArm | None:
 
 
 def model_of(robot: Json) -> Json:
-    """The robot.model of a job's robot with its defaults, its preset's if it has one."""
-    return load_preset(robot["preset"]) if robot["preset"] else robot["model"]
+    """The robot.model of a job's robot with its defaults, by its joints: its preset's if it has one, or a URDF's."""
+    if robot["preset"]:
+        return load_preset(robot["preset"])
+    model: Json = robot["model"]
+    return checked_model(urdf.model_of(model)) if model["urdf"] else model
 
 
-def links_of(robot: Json) -> list[robot_shape.Link]:
-    """[(tubes, hubs)] of a job's robot with its defaults, as ``robot_shape.links`` has them."""
+def links_of(
+    robot: Json, wanted: tuple[str, str] = urdf_shapes.COLLISION
+) -> list[robot_shape.Link]:
+    """[(tubes, hubs)] of a job's robot with its defaults, as ``robot_shape.links`` has them; of a URDF with bodies these,
+    and no hubs, unless the job has its own radii. ``wanted``: which of them (``urdf_shapes``)."""
+    if robot["model"]["urdf"] and not robot["link_radii_mm"]:
+        found = urdf_shapes.bodies(robot["model"], robot["packages"], wanted)
+        if found is not None:
+            return [(one, robot_shape.NOTHING) for one in found]
     of = arm(model_of(robot))
     return robot_shape.links(of, robot_shape.radii(robot, of), model_of(robot)["floor_mm"])
 
 
 def robot_frame(robot: Json, key: str) -> Floats:
-    """(4, 4), mm: the transform under a key of a job's robot. Raises InputError."""
+    """(4, 4), mm: the transform under a key of a job's robot; of its base where it stands in the passes, if external
+    axes move it or the part. Raises InputError."""
     try:
-        return frames.from_data(robot.get(key))
+        found = frames.from_data(robot.get(key))
     except InputError as error:
         raise at_key(error, f"robot.{key}") from None
+    axes = robot.get("external_axes", ())
+    if key == BASE and axes:
+        return external_axes.base_from_robot(axes, external_axes.at(axes, "position"), found)
+    return found
+
+
+def frame_at_zero(robot: Json) -> Floats:
+    """(4, 4), mm: the robot's base in the frame of the programs with all external axes at 0. Raises InputError."""
+    return robot_frame({**robot, "external_axes": ()}, BASE)
+
+
+def standing(robot: Json) -> Floats:
+    """(4, 4): how what stands in the cell lies in the frame of the programs, which goes with the part on a positioner."""
+    axes = robot.get("external_axes", ())
+    values = external_axes.at(axes, "position")
+    found: Floats = np.linalg.inv(external_axes.displacement(axes, values, external_axes.PART))
+    return found
 
 
 def pose_function(robot: Json) -> Callable[[Sequence[float]], Floats] | None:

@@ -27,6 +27,7 @@ UPRIGHT = 0.5  # of axis 1 along the base's z; else the foot begins at the joint
 LEAST = 1e-6  # mm; shorter is nothing
 
 Mesh: TypeAlias = "tuple[Floats, Array]"  # points (n, 3) mm, triangles (m, 3)
+NOTHING = np.zeros((0, 3)), np.zeros((0, 3), int)
 Link: TypeAlias = "tuple[Mesh, Mesh]"  # tubes, hubs
 Frustum: TypeAlias = "tuple[Floats, Floats, float, float]"  # ends, and a radius at each
 

@@ -192,6 +192,7 @@ class Motion:
     # motion with the posture that its language has for it.
     posture: Optional[Posture] = None
     note: str = ""  # what a comment before it says
+    external: tuple[float, ...] = ()  # where the external axes are at its end, mm or degrees
 
 
 @dataclass

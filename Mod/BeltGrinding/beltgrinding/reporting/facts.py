@@ -178,7 +178,7 @@ def process(job: Job | Json, summary: Json, words: Language) -> list[Any]:
 def _robot(robot: Robot, words: Language) -> str:
     if robot.preset:
         return robot.preset
-    own = robot.model.joints
+    own = robot.model.joints or robot.model.urdf
     return words("a robot of one's own") if own else words("not given; its reach is not checked")
 
 

@@ -1,5 +1,6 @@
 """Programs for the whole robot: postures along the passes, links between them, from home to home."""
 
-from .whole import Move, Whole, plan
+from .moves import Move, Whole
+from .whole import plan
 
 __all__ = ["Move", "Whole", "plan"]

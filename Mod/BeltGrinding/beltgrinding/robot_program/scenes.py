@@ -19,6 +19,8 @@ class Scenes(NamedTuple):
 
     passes: core.ArmScene
     links: core.ArmScene
+    bodies: list[dict[str, object]]  # of ``links``
+    bodies_of_passes: list[dict[str, object]]
 
 
 def of_job(
@@ -47,4 +49,5 @@ def of_job(
         robots.robot_frame(robot, "base_from_robot"),
         robots.robot_frame(robot, "flange_from_tcp"),
     )
-    return Scenes(*(core.ArmScene(arm, path, bodies, *frames, context) for bodies in (near, whole)))
+    passes, links = (core.ArmScene(arm, path, one, *frames, context) for one in (near, whole))
+    return Scenes(passes, links, whole, near)

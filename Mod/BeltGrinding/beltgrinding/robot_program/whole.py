@@ -6,53 +6,36 @@ Postures and links are the core's (``ArmScene``); here they are put in a row, an
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
-from typing import Any, Optional
+from typing import Any
 
 import numpy as np
 
-from ..base import records
-from ..base.kinds import Context, Facts, Floats, Json, known
+from ..base import frames, records
+from ..base.kinds import Context, Floats, Json, known
 from ..cell import tool_path as tool_paths
 from ..engine import InputError, core
+from ..job import robot_time
 from ..job.poses import program_name
 from ..job.settings import Job
 from ..job.typed import typed
-from ..presets import robot as robots
-from . import scenes as scene_lists
+from ..presets import external_axes, robot as robots
+from . import corners, external, facts, scenes as scene_lists
+from .linking import Linker
+from .moves import Move, Whole
 from .passes import Pass, least_way, split
 from .retract import retracted
 
 RESOLUTION = 0.05  # mm, of the last look
 STEP, TURN = 1.0, 0.02  # mm, rad, between places of the tool's straight ways there
-LINK_STEP = 0.5  # mm, of the search
 ROLL_STEP, LEAN_STEP, SHIFT_STEP = math.radians(10.0), math.radians(2.5), 0.25  # the last: of most
 RETRACTS = (1.0, 0.5, 2.0, 0.25, 4.0)  # times the job's, that are tried
+BLEND = 1.0  # mm, of corners whose motion gives no zone, as writers have it
+LEAST_FEED = 1e-3  # mm/s
+MAY_BE_FAST, FINER = (
+    0.3,
+    20.0,
+)  # of a joint's limit, from where a way is looked at in parts so much finer
 SLOWER = 1e-3  # relative; less is no lower feed
-
-
-@dataclass
-class Move:
-    """A motion of the program. ``joints_deg``: six angles at its end, None: not known, the arm does not get there."""
-
-    kind: str  # PTP: by joints; LIN
-    frame: Floats  # base_from_tcp at its end, mm
-    joints_deg: Optional[Floats]
-    feed: float = 0.0  # mm/s; PTP: not used
-    force: float = -1.0  # N
-    zone: float = 0.0  # mm; -1: the job's default
-    line: int = 0
-    note: str = ""
-
-
-@dataclass
-class Whole:
-    """A program for the whole robot. ``problems``: for which it must not run; ``notes``: what is to be known of it."""
-
-    moves: list[Move] = field(default_factory=list)
-    problems: Facts = field(default_factory=list)
-    notes: Facts = field(default_factory=list)
-    figures: dict[str, Any] = field(default_factory=dict)
 
 
 def wanted(job: Job | Json) -> bool:
@@ -91,8 +74,16 @@ class Planner:
         self.settings = job.robot.program
         path = tool_paths.tool_path(job, index, self.whole.notes)
         self.scenes = scene_lists.of_job(job, shape, path, self.whole.notes, context)
-        self.arm = known(robots.arm_of(records.plain(job.robot)))
+        self.robot = records.plain(job.robot)
+        self.arm = known(robots.arm_of(self.robot))
+        self.axes = self.robot["external_axes"]
+        self.external = external_axes.at(self.axes, "position")
+        self.turning = math.radians(robot_time.limits(job).rotation_speed_deg_s)
+        if self.arm.structure == "general":
+            name = robots.name(self.robot)
+            self.whole.notes.append(facts.no_closed_form(robot=name))
         self.home = np.radians(self.settings.home_joints_deg)
+        self.linker = Linker(self.scenes.links, job.cell, self.settings, context)
         self.given = tool_paths.motions(path)
         self.passes = self._passes()
         self.rows = np.concatenate([np.arange(one.first, one.last + 1) for one in self.passes])
@@ -109,18 +100,47 @@ class Planner:
         for number, safe in enumerate(self.settings.safe_joints_deg):
             self._check_place(np.radians(safe), f"robot.program.safe_joints_deg[{number}]", 0)
         found = self.postures(self.context.part(0.0, 0.6))
-        self._move(
-            Move("PTP", self._frame(self.home), np.degrees(self.home), note="home"), look=False
-        )
+        self._set_out()
         poses = found["poses"]
         begins = [k for k, one in enumerate(poses) if k == 0 or one["link"]]
         for count, (begin, end) in enumerate(zip(begins, [*begins[1:], len(poses)])):
             self.context.report(0.6 + 0.35 * count / len(begins))
             self._run(poses[begin:end])
         self._link(self.home, "home")
+        self._go_back()
+        self._look_at_corners()
         self._tell(found)
         self.context.report(1.0)
         return self.whole
+
+    def _set_out(self) -> None:
+        """From home, where the external axes go one by one to where they stand in the passes."""
+        stages = external.stages(self.axes)
+        self._at_home(stages[0].begin if stages else self.external, "home")
+        sweep = external.Sweep(self.job, self.scenes.bodies, self.home) if stages else None
+        for stage in stages:
+            name = external_axes.NAME.format(stage.number + 1)
+            self._at_home(stage.end, f"{name} to its place")
+            for body, other in known(sweep).meetings(stage):
+                begin, end = stage.begin[stage.number], stage.end[stage.number]
+                self.whole.problems.append(
+                    facts.external_meets(
+                        program=self.name, body=body, other=other, axis=name, begin=begin, end=end
+                    )
+                )
+
+    def _go_back(self) -> None:
+        for stage in reversed(external.stages(self.axes)):
+            name = external_axes.NAME.format(stage.number + 1)
+            self._at_home(stage.begin, f"{name} back home")
+
+    def _at_home(self, values: tuple[float, ...], note: str) -> None:
+        base = external_axes.base_from_robot(self.axes, values, robots.frame_at_zero(self.robot))
+        frame = (
+            base @ self.arm.forward(self.home) @ robots.robot_frame(self.robot, "flange_from_tcp")
+        )
+        joints = np.degrees(self.home)
+        self._move(Move("PTP", frame, joints, note=note, external=values), look=False)
 
     def postures(self, context: core.RunContext) -> dict[str, Any]:
         """As ``ArmScene.postures`` gives them, of the passes in their order."""
@@ -145,14 +165,7 @@ class Planner:
                 program=self.name,
             )
         if lone:
-            self.whole.notes.append(
-                core.Fact(
-                    "robot_program.lone_poses",
-                    "{program}: {count} rapid poses that begin no pass are left out: the links find their own way",
-                    program=self.name,
-                    count=lone,
-                )
-            )
+            self.whole.notes.append(facts.lone_poses(program=self.name, count=lone))
         if self.settings.order == "least_way":
             home = self._frame(self.home)
             found = [found[k] for k in least_way(self.given["frames"], found, home)]
@@ -258,54 +271,22 @@ class Planner:
         return None
 
     def _link(self, to: Floats, note: str) -> None:
-        """Joint motions from where the arm is, by the user's safe places where no direct way is found."""
-        ways = [[to]] + [[np.radians(safe), to] for safe in self.settings.safe_joints_deg]
-        for places in ways:
-            found, begin = [], self.at
-            for place in places:
-                found.append(self._way(begin, place))
-                begin = place
-            if all(one is not None for one in found):
-                break
-        else:
-            self._problem_of_link(to, note)
+        """Joint motions from where the arm is."""
+        found = self.linker.find(self.at, to)
+        if found is None:
+            body, other = self.linker.in_the_way(self.at, to)
+            self.whole.problems.append(
+                facts.no_link(program=self.name, place=note, body=body, other=other)
+            )
             found = [{"joints": np.stack([self.at, to]), "straight": True, "clearance": 0.0}]
         self.numbers["links"] += 1
-        self.numbers["links_round"] += any(not known(one)["straight"] for one in found)
+        self.numbers["links_round"] += any(not one["straight"] for one in found)
         for one in found:
-            self.least_clearance = min(self.least_clearance, known(one)["clearance"])
-            for q in known(one)["joints"][1:]:
+            self.least_clearance = min(self.least_clearance, one["clearance"])
+            for q in one["joints"][1:]:
                 self._move(Move("PTP", self._frame(q), np.degrees(q), note=note), look=False)
                 note = ""
         self.at = to
-
-    def _way(self, begin: Floats, end: Floats) -> dict[str, Any] | None:
-        found: dict[str, Any] | None = self.scenes.links.link(
-            begin, end, self.settings.clearance_mm, LINK_STEP, self.settings.seed,
-            context=self.context.part(0.0, 0.0),
-        )  # fmt: skip
-        return found
-
-    def _problem_of_link(self, to: Floats, note: str) -> None:
-        clearance = self.settings.clearance_mm / 8.0
-        met = self.scenes.links.within(self.at, clearance) or self.scenes.links.within(
-            to, clearance
-        )
-        if met is None:
-            met = self.scenes.links.on_way(self.at, to, clearance, RESOLUTION)
-        if met is None:  # cannot be: the straight way is tried first
-            met = ("", "", 0.0)
-        self.whole.problems.append(
-            core.Fact(
-                "robot_program.no_link",
-                "{program}: no way is found to {place}: {body} and {other} are in the way; give safe places "
-                "(robot.program.safe_joints_deg), or make room",
-                program=self.name,
-                place=note,
-                body=met[0],
-                other=met[1],
-            )
-        )
 
     def _move(self, move: Move, look: bool = True) -> None:
         """Adds a motion; ``look``: it is looked at whether it is free."""
@@ -314,6 +295,7 @@ class Planner:
             if look and move.kind == "LIN":
                 self._look(move, q)
             self.at = q
+        move.external = move.external or self.external
         self.whole.moves.append(move)
 
     def _look(self, move: Move, q: Floats) -> None:
@@ -321,20 +303,52 @@ class Planner:
         if not gets_there or np.abs(way[-1] - q).max() > 1e-6:
             self._tell_broken(move)
             return
+        self._keep_pace(move, way)
         met = self._met(self.scenes.passes, way)
         known_of = None if met is None else (*met[:2], self.numbers["passes"])
         if met is not None and known_of not in self.told:  # once a pass
             self.told.add(known_of)
+            place = self._place(move.line)
             self.whole.problems.append(
-                core.Fact(
-                    "robot_program.meets",
-                    "{program}: {body} and {other} run into each other on the way to {place}",
-                    program=self.name,
-                    body=met[0],
-                    other=met[1],
-                    place=self._place(move.line),
-                )
+                facts.meets(program=self.name, body=met[0], other=met[1], place=place)
             )
+
+    def _keep_pace(self, move: Move, way: Floats) -> None:
+        """Lowers a motion's feed so far that no joint is too fast anywhere on its ``way``, whose parts are equally long:
+        between two poses a joint may turn mostly in one place."""
+        before = self.whole.moves[-1].frame
+        length = float(np.linalg.norm(move.frame[:3, 3] - before[:3, 3]))
+        turn = float(np.linalg.norm(frames.rotation_vectors((before[:3, :3].T @ move.frame[:3, :3])[None])))  # fmt: skip
+        seconds = max(length / max(move.feed, LEAST_FEED), turn / self.turning)
+        if length <= 0.0 or seconds <= 0.0 or len(way) < 2:
+            return
+        most = self._fastest(way, seconds)
+        if most > MAY_BE_FAST:  # near a singularity a joint turns mostly within a part
+            finer, _ = self.scenes.passes.straight_way(
+                self.at, move.frame, STEP / FINER, TURN / FINER
+            )
+            most = self._fastest(finer, seconds)
+        if most > 1.0 + SLOWER:
+            move.feed = length / (seconds * most)
+            self.numbers["slower"] += 1
+
+    def _fastest(self, way: Floats, seconds: float) -> float:
+        """The greatest speed of a joint on a way of equally long parts, times its limit."""
+        fastest = np.abs(np.diff(way, axis=0)).max(axis=0) * (len(way) - 1) / seconds
+        limited = self.arm.max_speed > 0.0
+        return float((fastest[limited] / self.arm.max_speed[limited]).max(initial=0.0))
+
+    def _look_at_corners(self) -> None:
+        default = max(robot_time.limits(self.job).default_zone_mm, BLEND)
+        for move, places in corners.rounded(self.whole.moves, default):
+            way = corners.way(self.scenes.passes, move, places)
+            met = None if way is None else self._met(self.scenes.passes, way)
+            if met is not None:
+                place = f"line {move.line}" if move.line else "a pose"
+                self.whole.problems.append(
+                    facts.corner_meets(program=self.name, body=met[0], other=met[1], place=place)
+                )
+                return
 
     @staticmethod
     def _met(scene: core.ArmScene, way: Floats) -> tuple[Any, ...] | None:
@@ -362,61 +376,26 @@ class Planner:
         return Move("LIN", pose["frame"], joints, feed, force, zone, self._line(pose))
 
     def _tell_cut(self, pose: Json) -> None:
-        fact = core.Fact(
-            "robot_program.cut",
-            "{program}: pass {number} is cut at {place}: the arm cannot do it in one posture",
-            program=self.name,
-            number=self.numbers["passes"],
-            place=self._place(self._line(pose)),
-        )
-        self.whole.notes.append(fact)
+        number, place = self.numbers["passes"], self._place(self._line(pose))
+        self.whole.notes.append(facts.cut(program=self.name, number=number, place=place))
         if pose["torn"]:
             self._tell_broken(self._motion(pose))
 
     def _tell_broken(self, move: Move) -> None:
-        self.whole.problems.append(
-            core.Fact(
-                "robot_program.broken",
-                "{program}: the arm cannot go straight to {place}: a joint would jump or pass its limit on the way",
-                program=self.name,
-                place=self._place(move.line),
-            )
-        )
+        place = self._place(move.line)
+        self.whole.problems.append(facts.broken(program=self.name, place=place))
 
     def _tell_poses(self, poses: list[dict[str, Any]]) -> None:
-        far = [one for one in poses if not one["reached"] and one["within_limits"]]
-        if far:
-            self.whole.problems.append(
-                core.Fact(
-                    "robot_program.out_of_reach",
-                    "{program}: {count} poses, first {place}, are out of the robot's reach",
-                    program=self.name,
-                    count=len(far),
-                    place=self._place(self._line(far[0])),
-                )
-            )
-        beyond = [one for one in poses if not one["reached"] and not one["within_limits"]]
-        if beyond:
-            self.whole.problems.append(
-                core.Fact(
-                    "robot_program.beyond_limits",
-                    "{program}: {count} poses, first {place}, are reached beyond the joints' limits only",
-                    program=self.name,
-                    count=len(beyond),
-                    place=self._place(self._line(beyond[0])),
-                )
-            )
+        for fact, within in ((facts.out_of_reach, True), (facts.beyond_limits, False)):
+            lost = [one for one in poses if not one["reached"] and one["within_limits"] == within]
+            if lost:
+                place = self._place(self._line(lost[0]))
+                self.whole.problems.append(fact(program=self.name, count=len(lost), place=place))
 
     def _tell(self, found: Json) -> None:
         if self.numbers["slower"]:
-            self.whole.notes.append(
-                core.Fact(
-                    "robot_program.slower",
-                    "{program}: at {count} motions the joints' speeds or accelerations lower the feed",
-                    program=self.name,
-                    count=self.numbers["slower"],
-                )
-            )
+            count = self.numbers["slower"]
+            self.whole.notes.append(facts.slower(program=self.name, count=count))
         joints = np.stack([m.joints_deg for m in self.whole.moves if m.joints_deg is not None])
         lower, upper = np.degrees(self.arm.lower), np.degrees(self.arm.upper)
         self.whole.figures = {

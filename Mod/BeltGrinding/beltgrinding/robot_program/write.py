@@ -23,9 +23,10 @@ from ..programs.force_device import of_job
 from ..programs.program import Motion, Posture, Program
 from ..programs.registry import read_program
 from ..programs.writers.frames import words_of_cell
+from ..programs.writers.sheet import Load
 from ..programs.writers.writer import write_program
 from . import whole as wholes
-from .whole import Move, Whole
+from .moves import Move, Whole
 
 if TYPE_CHECKING:
     from ..programs.writers.frames import Given
@@ -91,7 +92,7 @@ def _motion(move: Move, arm: core.RobotArm, words: dict[str, str], stops: bool) 
     return Motion(
         move.kind, move.frame, move.line, "", move.feed if path else None,
         move.force if path and move.force >= 0 else None, words["tool"], words["base"], zone_mm=zone,
-        joints_deg=joints, posture=posture, note=move.note,
+        joints_deg=joints, posture=posture, note=move.note, external=move.external,
     )  # fmt: skip
 
 
@@ -125,6 +126,7 @@ def write(
         "force_device": of_job(job),
         "pace": robot_time.limits(job).pace,
         "joint_percent": job.robot.program.joint_speed_percent,
+        "load": _load(job),
     }
     made = program(whole, job)
     if unsafe and whole.problems:
@@ -137,6 +139,11 @@ def write(
             check_joints(tried, job, whole)
         os.replace(tried, file)
     return [*notes]
+
+
+def _load(job: Job) -> Load | None:
+    load = job.robot.load
+    return Load(load.mass_kg, load.centre_mm, load.inertia_kg_m2) if load.mass_kg > 0.0 else None
 
 
 def joints_of_file(file: Path, job: Job | Json) -> Floats:

@@ -35,8 +35,13 @@ class ArmScene {
     /// The flange where the tool frame is at `base_from_tcp`.
     Frame robot_from_flange(const Frame& base_from_tcp) const;
 
+    /// Pairs that are looked at: with a link of the arm, whose place the joint angles decide;
+    /// without, which lie alike for all joint angles that hold the tool at the same place.
+    enum class Pairs { kAll, kOfArm, kOfTool };
+
     /// The first pair that is nearer than `distance` mm, margins counted, or crosses.
-    std::optional<Meeting> within(const Joints& q, double distance) const;
+    std::optional<Meeting> within(const Joints& q, double distance,
+                                  Pairs pairs = Pairs::kAll) const;
     /// The first pair of which one lies within the other, without crossing.
     std::optional<Meeting> inside(const Joints& q) const;
     /// The first pair that comes nearer than `clearance` on the straight way of the joints. Between

@@ -18,6 +18,7 @@ struct ReachOptions {
     double max_angle = 0.02;   ///< rad it turns between them
     double singularity = 0.1;  ///< rad, nearer to a singularity is an event
     double flip = 0.8;         ///< rad that a joint may turn between two checks
+    double turn_speed = M_PI;  ///< rad/s at which the controller turns the tool at most
 };
 
 /// Where the joints are at a moment of the path.

@@ -48,7 +48,8 @@ class RobotBox(QtGui.QGroupBox):
         self.choice.addItem(translate("BeltGrinding", "(none: reach is not checked)"))
         for one in presets.robots():
             self.choice.addItem(one["name"])
-        if json.loads(machine.RobotModel or "{}").get("joints"):
+        own = json.loads(machine.RobotModel or "{}")
+        if own.get("joints") or own.get("urdf"):
             self.ids.append(OWN)
             self.choice.addItem(translate("BeltGrinding", "own model (property RobotModel)"))
         current = machine.Robot or (OWN if OWN in self.ids else "")

@@ -33,7 +33,12 @@ from .shapes3d import (
     wheel,
 )
 
-PLACES = {"wheel": "contact"}  # where a body goes, if it is not called as in a job
+# Frames beside those of the base of the programs, which goes with a part on a positioner: what stands in the cell.
+STANDING = "standing"
+PLACES = {
+    "wheel": "contact",
+    "base": STANDING,
+}  # where a body goes, if it is not called as in a job
 ALARM, TINT, FADE = (0.86, 0.12, 0.10), "BeltGrindingTint", "BeltGrindingFade"
 CELL: dict[str, Any] = {
     "holding": "tool_in_hand",
@@ -52,7 +57,7 @@ class CellView:
         self.pose, self.moving = 0, False
         self.frame: Array | None = None  # between two poses
         self.carrier = coin.SoMatrixTransform()
-        self.places = {name: coin.SoMatrixTransform() for name in ("contact", "tool", "base")}
+        self.places = {name: coin.SoMatrixTransform() for name in ("contact", "tool", STANDING)}
         self.things = {name: coin.SoGroup() for name in (*self.places, "part")}
         self.root = separator(unpickable())
         for name, things in self.things.items():
@@ -174,7 +179,8 @@ class CellView:
 
     def frames(self) -> dict[str, Array]:
         """{frame: work_from_frame} at the pose."""
-        return work_from_frames(self.base_from_tcp(), **self.cell())
+        found = work_from_frames(self.base_from_tcp(), **self.cell())
+        return {**found, STANDING: found["base"] @ self.robot.standing}
 
     def base_from_tcp(self) -> Array:
         return self.poses[self.pose] if self.frame is None else self.frame

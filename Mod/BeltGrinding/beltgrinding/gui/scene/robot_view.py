@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pivy import coin
 
-from ...base import frames
 from ...engine import InputError
-from ...presets import robot as robots
+from ...presets import robot as robots, urdf_shapes
 from ...geometry.body_names import LINKS
 from ..common.kinds import Array, Json, Node, Surface
 from .shapes3d import material, separator, set_matrix, triangles
@@ -32,6 +31,7 @@ class RobotView:
         self.bodies: dict[str, Node] = {}
         self.arm: core.RobotArm | None = None
         self.joints: Array | None = None
+        self.standing: Array = np.eye(4)  # base_from_room: external axes may carry the part
         self.shapes: list[tuple[str, Array, Array]] = []  # of the links: name, points, triangles
         self.at: list[Array] = []  # frames of the links at the pose
         self.followed: Array | None = None  # (n, 6) degrees, of a path that was followed as a whole
@@ -39,17 +39,19 @@ class RobotView:
     def choose(self, robot: Json) -> None:
         """A job's robot, with its defaults; its errors are the panel's."""
         self.joints = self.followed = None
+        self.standing = np.eye(4)
         self.root.removeAllChildren()
         self.places, self.bodies, self.shapes = [], {}, []
         try:
             robot = robots.checked(robot)
             self.arm = robots.arm_of(robot)
+            self.standing = robots.standing(robot)
         except InputError:
             self.arm = None
         if self.arm is not None:
-            self._build(robots.links_of(robot))
-            self.base_from_robot = frames.from_data(robot.get("base_from_robot"))
-            self.flange_from_tcp = frames.from_data(robot.get("flange_from_tcp"))
+            self._build(robots.links_of(robot, urdf_shapes.VISUAL))
+            self.base_from_robot = robots.robot_frame(robot, "base_from_robot")
+            self.flange_from_tcp = robots.robot_frame(robot, "flange_from_tcp")
             self.near = np.clip(np.zeros(6), self.arm.lower, self.arm.upper)
 
     def place(self, work_from_base: Array, base_from_tcp: Array, index: int) -> None:

@@ -17,9 +17,9 @@ from .text import DIGITS, ZONE_DIGITS, Digits, rounded
 
 if TYPE_CHECKING:
     from .frames import Frame
-    from .sheet import Pace, Sheet, Step
+    from .sheet import Load, Pace, Sheet, Step
 
-JOINT_DIGITS = 6  # of degrees
+JOINT_DIGITS, LOAD_DIGITS = 6, 4  # of degrees; of kg, mm, kg m2
 NAME = re.compile(r"[A-Za-z]\w{0,23}$", re.ASCII)
 # A Cartesian PTP without status and turn is reached in the posture that the robot happens to have.
 FIRST = [
@@ -77,7 +77,10 @@ def text(sheet: Sheet) -> bytes:
             head += _setting(sheet.bases[base])
         if step.tool != tool:
             tool = step.tool
-            head += _setting(sheet.tools[tool])
+            head += [
+                *_setting(sheet.tools[tool]),
+                *_load(sheet.load),
+            ]  # BAS (#TOOL) sets a load, too
         last = k + 1 == len(sheet.steps)
         rounds = ""
         if step.kind in ("LIN", "CIRC") and not last:
@@ -131,17 +134,25 @@ def _joint_speed(percent: float | None) -> list[str]:
     return [] if percent is None else [f"BAS (#VEL_PTP,{max(1, round(percent))} )"]
 
 
+def _load(load: Load | None) -> list[str]:
+    """$LOAD, whose frame is the flange; J: 0 where the inertia is not known."""
+    if load is None:
+        return []
+    at = ",".join(f"{k} {decimal(v, LOAD_DIGITS)}" for k, v in zip("XYZ", load.centre_mm))
+    about = ",".join(f"{k} {decimal(v, LOAD_DIGITS)}" for k, v in zip("XYZ", load.inertia_kg_m2))
+    mass = decimal(load.mass_kg, LOAD_DIGITS)
+    return [f"$LOAD={{M {mass},CM {{{at},A 0,B 0,C 0}},J {{{about}}}}}"]
+
+
 def _target(step: Step, pose: str) -> str:
     """Joint angles where a PTP has them; else the pose, with status and turn where the posture is known."""
-    if step.joints is None:
-        return pose
-    if step.kind == "PTP":
-        angles = (f"A{k} {decimal(one, JOINT_DIGITS)}" for k, one in enumerate(step.joints, 1))
-        return "{" + ",".join(angles) + "}"
-    if step.posture is None:
-        return pose
-    status, turn = status_and_turn(step.posture, step.joints)
-    return f"{pose[:-1]},S {status},T {turn}}}"
+    parts = [pose[1:-1]]
+    if step.joints is not None and step.kind == "PTP":
+        parts = [f"A{k} {decimal(one, JOINT_DIGITS)}" for k, one in enumerate(step.joints, 1)]
+    elif step.joints is not None and step.posture is not None:
+        parts += ["S {},T {}".format(*status_and_turn(step.posture, step.joints))]
+    parts += [f"E{k} {decimal(one, JOINT_DIGITS)}" for k, one in enumerate(step.external, 1)]
+    return "{" + ",".join(parts) + "}"
 
 
 def status_and_turn(posture: Posture, joints: Joints) -> tuple[int, int]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ...base.frames import to_quaternions
@@ -20,12 +21,12 @@ from .text import DIGITS, ZONE_DIGITS, Digits, identifier, rounded, rounded_quat
 if TYPE_CHECKING:
     from .frames import Frame
     from ..force_device import ForceDevice
-    from .sheet import Sheet, Step
+    from .sheet import Load, Sheet, Step
 
 MOST = 32  # characters of an identifier
 FORCE_DIGITS = 4  # of N along an axis
-EXTERNAL = "[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]"
-JOINT_DIGITS = 6  # of degrees
+EXTERNAL, NO_AXIS = 6, "9E+09"  # external axes of a target; the value of one that is not there
+JOINT_DIGITS, LOAD_DIGITS = 6, 4  # of degrees; of kg, mm, kg m2
 NAME = re.compile(r"[A-Za-z]\w{0,31}", re.ASCII)
 TYPES = {"tool": "tooldata", "base": "wobjdata"}
 DECLARED = {"tool": "tool_", "base": "wobj_"}
@@ -48,7 +49,7 @@ def text(sheet: Sheet) -> bytes:
             there = name in names[frame.what]  # one of the controller's may be given for several
             names[frame.what].append(name)
             if frame.given:
-                lines += _declaration(frame, name, held)
+                lines += _declaration(frame, name, held, sheet.load)
             elif not there:
                 lines += _asked_for(frame, name, held)
                 sheet.notes.append(undeclared(frame, name))
@@ -60,11 +61,12 @@ def text(sheet: Sheet) -> bytes:
     if any(step.kind == "SPL" for step in sheet.steps):
         lines.append("    ! RAPID has no splines: their points are joined by lines.")
     places = [
-        f"{_target(p, q, sheet.digits)[:-1]},{configuration},{EXTERNAL}]"
-        for p, q, configuration in zip(
+        f"{_target(p, q, sheet.digits)[:-1]},{configuration},{external}]"
+        for p, q, configuration, external in zip(
             rounded(sheet.positions, sheet.digits.mm).tolist(),
             rounded_quaternions(sheet.quaternions, sheet.digits.unit).tolist(),
             _configurations(sheet),
+            _externals(sheet),
         )
     ]
     blend = _blend(sheet.blend_mm)
@@ -90,7 +92,7 @@ def text(sheet: Sheet) -> bytes:
             rounds = "fine"
         move, force = MOVES[step.kind], ""
         if step.kind == "PTP" and step.joints is not None:
-            move, target = "MoveAbsJ", _joint_target(step.joints)
+            move, target = "MoveAbsJ", _joint_target(step.joints, step.external)
         if pressed[k] == "start":
             move, force = "FCPress1LStart", _first_press(
                 known(device), step, sheet.frames[step.pose]
@@ -109,9 +111,25 @@ def text(sheet: Sheet) -> bytes:
     return "\r\n".join(lines).encode("ascii")
 
 
-def _joint_target(joints: Joints) -> str:
+def _joint_target(joints: Joints, external: Sequence[float]) -> str:
     angles = ",".join(decimal(one, JOINT_DIGITS) for one in joints)
-    return f"[[{angles}],{EXTERNAL}]"
+    return f"[[{angles}],{_external(external)}]"
+
+
+def _external(values: Sequence[float]) -> str:
+    """extjoint: where the external axes are, mm or degrees."""
+    known = [decimal(one, JOINT_DIGITS) for one in values]
+    return "[" + ",".join([*known, *[NO_AXIS] * (EXTERNAL - len(known))]) + "]"
+
+
+def _externals(sheet: Sheet) -> list[str]:
+    """extjoint of each pose."""
+    found = [_external(())] * len(sheet.frames)
+    for step in sheet.steps:
+        for pose in (step.pose, step.aux):
+            if pose is not None:
+                found[pose] = _external(step.external)
+    return found
 
 
 def _configurations(sheet: Sheet) -> list[str]:
@@ -155,20 +173,26 @@ def _name(frame: Frame, number: int) -> str:
     return name
 
 
-def _declaration(frame: Frame, name: str, held: bool) -> list[str]:
+def _declaration(frame: Frame, name: str, held: bool, load: Load | None) -> list[str]:
     words = f"  ! {'tool' if frame.what == 'tool' else 'work object'} {frame.told}"
     if frame.what == "tool":
-        return [
-            words,
-            "  ! Enter its load before the program runs.",
-            f"  PERS tooldata {name}:=[{_flag(not held)},{_pose(known(frame.pose))},"
-            "[1,[0,0,1],[1,0,0,0],0,0,0]];",
-        ]
+        asked = [] if load else ["  ! Enter its load before the program runs."]
+        place = f"{_flag(not held)},{_pose(known(frame.pose))}"
+        return [words, *asked, f"  PERS tooldata {name}:=[{place},{_load(load)}];"]
     return [
         words,
         f'  PERS wobjdata {name}:=[{_flag(held)},TRUE,"",{_pose(known(frame.pose))},'
         "[[0,0,0],[1,0,0,0]]];",
     ]
+
+
+def _load(load: Load | None) -> str:
+    """loaddata, in the wrist's frame; of a load that is not known the least that the controller takes."""
+    if load is None:
+        return "[1,[0,0,1],[1,0,0,0],0,0,0]"
+    at = ",".join(decimal(one, LOAD_DIGITS) for one in load.centre_mm)
+    about = ",".join(decimal(one, LOAD_DIGITS) for one in load.inertia_kg_m2)
+    return f"[{decimal(load.mass_kg, LOAD_DIGITS)},[{at}],[1,0,0,0],{about}]"
 
 
 def _asked_for(frame: Frame, name: str, held: bool) -> list[str]:

@@ -14,6 +14,8 @@ from ..program import Fact, Joints, Posture, ProgramError
 from .frames import Frame
 from .text import DIGITS, Digits
 
+WITH_EXTERNAL = (".src", ".mod", ".modx")  # languages that have external axes here
+
 
 @dataclass
 class Step:
@@ -31,6 +33,19 @@ class Step:
     note: str = ""  # what a comment before it says
     joints: Optional[Joints] = None  # degrees, where they are known
     posture: Optional[Posture] = None
+    external: tuple[float, ...] = ()  # of the external axes, mm or degrees
+
+
+class Load(NamedTuple):
+    """What the flange carries, as controllers want it."""
+
+    mass_kg: float
+    centre_mm: tuple[float, float, float]  # of gravity, in the flange
+    inertia_kg_m2: tuple[float, float, float]  # about it, along the flange's axes; 0: not known
+
+    def told(self) -> str:
+        at = ", ".join(f"{one:g}" for one in self.centre_mm)
+        return f"load of the flange: {self.mass_kg:g} kg at {at} mm; set it on the controller"
 
 
 class Pace(NamedTuple):
@@ -64,6 +79,7 @@ class Sheet:
     device: Optional[ForceDevice] = None  # that the program sets its forces by
     pace: Optional[Pace] = None
     joint_percent: Optional[float] = None  # speed of joint motions; None: the controller's
+    load: Optional[Load] = None  # that the program sets; None: it leaves it to the controller
     notes: list[Fact] = field(default_factory=list)  # what the program takes for granted
 
     def ways(self) -> tuple[Floats, Floats]:
@@ -81,6 +97,16 @@ class Sheet:
                 "{language}: the path speed would be another one; write RAPID, or the "
                 "poses of the part in the room",
                 language=language,
+            )
+
+    def refuse_external(self, suffix: str) -> None:
+        """Raises ProgramError for external axes in a language whose statement for them no public source shows."""
+        if suffix not in WITH_EXTERNAL and any(step.external for step in self.steps):
+            raise ProgramError(
+                "programs.writers.external",
+                "external axes are written as {known} only, not as '{suffix}'",
+                known=", ".join(WITH_EXTERNAL),
+                suffix=suffix,
             )
 
     def posture(self) -> Fact:

@@ -18,7 +18,7 @@ from .text import DIGITS, identifier, rounded
 
 if TYPE_CHECKING:
     from .frames import Frame
-    from .sheet import Sheet
+    from .sheet import Load, Sheet
 
 ACCELERATION = 1.2  # m/s2, the manual's default
 JOINT_ACCELERATION = 1.4  # rad/s2, likewise
@@ -55,6 +55,8 @@ def text(sheet: Sheet) -> bytes:
             f"  # The poses mean: {first.told}",
         ]
         lines += [f"  #   set_tcp({_one(known(first.pose))})"] if first.pose is not None else []
+    if sheet.load is not None:
+        lines.append(f"  {_payload(sheet.load)}")
     if any(step.kind == "SPL" for step in sheet.steps):
         lines.append("  # URScript has no splines: their points are joined by lines.")
     places = [
@@ -97,6 +99,14 @@ def text(sheet: Sheet) -> bytes:
     lines += [f"  {one}" for one in pressed[len(sheet.steps) :] if one]
     lines += ["end", ""]
     return "\n".join(lines).encode("ascii")
+
+
+def _payload(load: Load) -> str:
+    """kg, m and kg m2 (Ixx, Iyy, Izz, Ixy, Ixz, Iyz) in the flange."""
+    at = ", ".join(decimal(one / 1000.0, 6) for one in load.centre_mm)
+    about = ", ".join([*(decimal(one, 6) for one in load.inertia_kg_m2), "0", "0", "0"])
+    inertia = f", [{about}]" if any(load.inertia_kg_m2) else ""
+    return f"set_target_payload({decimal(load.mass_kg, 4)}, [{at}]{inertia})"
 
 
 def _check_numbers(frame: Frame) -> None:

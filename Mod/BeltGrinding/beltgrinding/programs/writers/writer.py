@@ -26,7 +26,7 @@ from . import one_base
 from .frames import Frames, checked
 from .pressing import late, not_set, settle
 from .read_again import check_forces
-from .sheet import Pace, Sheet, Step
+from .sheet import Load, Pace, Sheet, Step
 from .spline import FORMS, fit_zones
 from .text import DIGITS, printable
 from .turned import resolved
@@ -42,6 +42,8 @@ ANY_SPEED = 100.0  # mm/s, where only zones are asked for
 IN_HAND = ("held by the robot", "fixed in the room")  # as the RAPID reader says it
 
 Written: TypeAlias = "Program | Iterable[Motion] | Iterable[Json]"  # Json: passes
+
+WITH_LOAD = (".src", ".mod", ".modx", ".script")  # languages that set the flange's load
 
 
 def write_program(
@@ -62,6 +64,7 @@ def write_program(
     force_device: Device = None,
     pace: tuple[float, float, float] | None = None,
     joint_percent: float | None = None,
+    load: Load | None = None,
 ) -> list[Fact]:
     """Writes a robot program to ``path``, whole or not at all. Raises ProgramError.
 
@@ -91,6 +94,7 @@ def write_program(
     pace: (acceleration along the path, mm/s2, angular acceleration, degrees/s2, speed of turning, degrees/s) that the
     program sets as far as its language can, since its feeds count on them; None: it leaves them as they are.
     joint_percent: the speed of joint motions, percent of the greatest; None: the controller's.
+    load: of the flange, which KRL, RAPID and URScript set with their tool, and others say in the head; None: not set.
 
     A motion without a pose (a joint target, a gap) becomes a comment, and the next pose is reached
     by PTP: nothing is ground on a way that is not known.
@@ -128,12 +132,14 @@ def write_program(
     sheet = _sheet(
         motions, Frames(tools, "tool", known.tool_frames), Frames(bases, "base", known.base_frames)
     )
+    sheet.refuse_external(suffix)
     sheet.name = name or path.stem
     head = [comment] if comment else []
     if isinstance(program, Program):
         head.append(f"from {program.file} ({program.language})")
         head += [f"not followed there: {problem}" for problem in ordered(program.problems)[:20]]
     head.insert(1, WRITTEN_BY)  # the first may be the title
+    head += [] if load is None or suffix in WITH_LOAD else [load.told()]
     head += [str(fact) for _, _, fact in left_out]
     head += one_base.comments(joined)
     sheet.comments = [printable(text) for text in head]
@@ -145,7 +151,7 @@ def write_program(
     if suffix != ".csv":  # which no controller follows
         sheet.form, sheet.digits, sheet.device = form, DIGITS[digits], device_of(force_device)
         sheet.pace = None if pace is None else Pace(*pace)
-        sheet.joint_percent = joint_percent
+        sheet.joint_percent, sheet.load = joint_percent, load
         fit_zones(sheet)
         pressed = [*settle(sheet), *not_set(sheet), *late(sheet, suffix)]
     data = writer(sheet)
@@ -253,6 +259,7 @@ def _sheet(motions: Iterable[Motion], tool_rows: Frames, base_rows: Frames) -> S
             step.zone = max(0.0, motion.zone_mm)
         step.share = motion.corner_share
         step.joints, step.posture = motion.joints_deg, motion.posture
+        step.external = motion.external
         step.tool, step.base, step.note = (
             tool_rows.row(motion.tool),
             base_rows.row(motion.base),

@@ -133,6 +133,7 @@ def test_the_stock_is_a_shell_until_there_is_a_result():
     doc.Stock.ViewObject.Visibility = True
     assert shown()
     doc.Stock.Kind = "solid"
+    settle()
     assert not shown()
     doc.Stock.Kind = "allowance"
     menu("Simulate")

@@ -17,7 +17,6 @@ def add(parser):
         help="of the area, in tolerance, for the part to pass (default: all of it)",
     )
 
-
     parser.add_argument(
         "--json",
         action="store_true",

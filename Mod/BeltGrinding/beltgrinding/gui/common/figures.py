@@ -9,8 +9,6 @@ from typing import Any
 
 from PySide import QtCore
 
-from ...objects import preferences
-
 NARROW = "\u202f"  # a blank that keeps a number on one line
 
 
@@ -30,13 +28,20 @@ def figure(value: Any, spec: str = "") -> str:
 
 def length_text(value: float, more: int = 0, sign: str = "+") -> str:
     """A deviation in mm as a number with its unit; ``more``: decimals beyond the usual."""
-    return f"{length_number(value, more, sign)} {preferences.deviation_unit().symbol}"
+    return f"{length_number(value, more, sign)} {_unit().symbol}"
 
 
 def length_number(value: float, more: int = 0, sign: str = "+") -> str:
     """The same without its unit, which the head of its column has."""
-    unit = preferences.deviation_unit()
+    unit = _unit()
     return figure(value / unit.size, f"{sign}.{unit.decimals + more}f")
+
+
+def _unit() -> Any:
+    # The preferences need the core, and all texts need this module: FreeCAD starts without the core, too.
+    from ...objects import preferences
+
+    return preferences.deviation_unit()
 
 
 class _Filler(string.Formatter):

@@ -130,11 +130,11 @@ class Scene:
                 switch.whichChild = child
                 if child < 0 and switch == view.SwitchNode:  # shown while it was turned off here
                     view.DisplayMode = view.DisplayMode
-            except (ReferenceError, RuntimeError):
+            except (NameError, ReferenceError, RuntimeError):
                 pass  # the object is gone
         for one in self.covered:
             try:
                 one.ViewObject.Proxy.cover(False)
-            except (AttributeError, ReferenceError, RuntimeError):
+            except (AttributeError, NameError, ReferenceError, RuntimeError):
                 pass  # the object is gone
         self.hidden, self.covered = [], []

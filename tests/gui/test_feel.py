@@ -12,7 +12,8 @@ import Part
 from PySide import QtCore, QtGui
 
 from beltgrinding import core
-from beltgrinding.gui.common import figures, runner
+from beltgrinding.gui.common import runner
+from beltgrinding.gui.common.figures import length_text
 from beltgrinding.gui.panels import simulation_panel
 from beltgrinding.gui.preferences_page import PreferencesPage
 from beltgrinding.objects import preferences
@@ -184,7 +185,7 @@ def test_preferences_take_effect():
     page.colours["ColourAbove"].show_colour(0x20A040FF)
     page.saveSettings()
     assert standard != 0.8 and core.threads() == 1
-    assert figures.length_text(0.0123) == "+12 \u00b5m"
+    assert length_text(0.0123) == "+12 \u00b5m"
 
     def middle():
         view = Gui.ActiveDocument.ActiveView

@@ -47,6 +47,7 @@ def drawn():
     }
 
 
+@pytest.mark.slow
 @pytest.mark.freecad(window=True, fresh=True)
 def test_each_kind_has_its_fields_and_its_drawing():
     job = prepare()

@@ -18,6 +18,7 @@ def worn(doc, job):
     settle()
 
 
+@pytest.mark.slow
 def test_from_costs_to_belts_and_files(tmp_path):
     doc, job, _ = prepared()
     worn(doc, job)

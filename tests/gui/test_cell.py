@@ -138,6 +138,7 @@ def test_a_cam_path_is_followed():
     assert not [o for o in doc.Objects if o.Label == "Contour ground"]
 
 
+@pytest.mark.slow
 def test_the_robot_is_chosen_drawn_and_followed():
     here = prepared()
     job, machine = here.job, here.machine

@@ -66,6 +66,7 @@ def test_every_command_is_started_from_the_menu_by_a_test():
     assert sorted(set(commands) - started) == []
 
 
+@pytest.mark.slow
 def test_programs_are_read_again():
     doc, job = prepared()
     raster = __import__("beltgrinding").make_raster(job, StepOver="8 mm")
@@ -126,6 +127,7 @@ def test_a_job_goes_to_another_machine_and_its_result_comes_back():
     assert {**json.loads(Path("again.json").read_text()), "design": None} == again
 
 
+@pytest.mark.slow
 def test_raster_and_followed_paths_are_exported_from_their_context_menu():
     doc, job = prepared()
     milling = doc.addObject("Path::Feature", "Contour")

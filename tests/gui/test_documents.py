@@ -39,6 +39,7 @@ def test_there_is_a_state_of_every_issue():
     assert len(STATES) == 5
 
 
+@pytest.mark.slow
 @pytest.mark.freecad(window=True)
 def test_a_document_opens_with_its_result(old):
     here = opened(old)
@@ -94,6 +95,7 @@ def test_a_document_opens_with_its_result(old):
     assert sum(coloured(Path.cwd() / "old.png")) > 5000  # not grey
 
 
+@pytest.mark.slow
 @pytest.mark.freecad(window=True)
 def test_a_document_is_worked_on(old):
     here = opened(old)
@@ -139,6 +141,7 @@ def test_a_document_is_worked_on(old):
     assert not [o.Name for o in doc.Objects if "Invalid" in o.State]
 
 
+@pytest.mark.slow
 @pytest.mark.freecad(window=True)
 def test_a_result_comes_back_into_its_document(old):
     here = opened(old)

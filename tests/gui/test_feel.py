@@ -81,6 +81,7 @@ def test_a_dropped_program_goes_into_the_job():
         doc.redo()
 
 
+@pytest.mark.slow
 @pytest.mark.freecad(window=True, fresh=True)
 def test_the_suffixes_are_ours_or_shared():
     ours = "beltgrinding.objects.importer"
@@ -233,6 +234,7 @@ def test_preferences_take_effect():
     assert preferences.job_default("DefaultToleranceLower") < 0
 
 
+@pytest.mark.slow
 @pytest.mark.freecad(window=True, fresh=True)
 def test_the_page_stands_in_freecads_preferences():
     start()

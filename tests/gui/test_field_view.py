@@ -288,6 +288,7 @@ def test_a_coin_that_was_not_started_is_not_used():
     )
 
 
+@pytest.mark.slow
 @pytest.mark.freecad(window=True, fresh=True)
 def test_the_own_node_is_found_beside_the_core():
     """Also where nothing else has put the core's folder on Python's path, or has taken it off again."""

@@ -98,6 +98,7 @@ def test_six_clicks_from_a_part_to_colours():
     assert [o.Name for o in doc.Objects] == ["Block"]
 
 
+@pytest.mark.slow
 def test_values_come_from_the_part_and_follow_its_faces():
     start()
     doc = FreeCAD.newDocument("work")
@@ -129,6 +130,7 @@ def test_values_come_from_the_part_and_follow_its_faces():
     assert doc.RasterPath.PoseCount > 2
 
 
+@pytest.mark.slow
 def test_first_values_say_what_they_bring_and_offer_a_plan():
     start()
     doc = FreeCAD.newDocument("work")
@@ -156,6 +158,7 @@ def test_first_values_say_what_they_bring_and_offer_a_plan():
     press("Close")
 
 
+@pytest.mark.slow
 def test_another_kind_of_machine_gets_values_of_its_own():
     start()
     doc = FreeCAD.newDocument("work")
@@ -206,6 +209,7 @@ def test_another_kind_of_machine_gets_values_of_its_own():
     assert [o.Name for o in doc.Objects] == ["Shell"]
 
 
+@pytest.mark.slow
 def test_a_large_part_takes_no_millions_of_samples_without_a_word():
     start()
     doc = FreeCAD.newDocument("work")
@@ -245,6 +249,7 @@ def test_faces_on_which_no_pass_can_lie_give_a_job_all_the_same():
     assert [o.Label for o in doc.BeltGrindingJob.Group] == ["Stock", "Belt machine"]
 
 
+@pytest.mark.slow
 def test_a_program_takes_the_place_of_proposed_passes_whatever_way_it_comes():
     start()
     doc = FreeCAD.newDocument("work")
@@ -266,6 +271,7 @@ def test_a_program_takes_the_place_of_proposed_passes_whatever_way_it_comes():
     assert len(job.Group) == 5
 
 
+@pytest.mark.slow
 def test_loose_faces_are_flipped_in_the_panel():
     start()
     Gui.activateWorkbench("BeltGrindingWorkbench")

@@ -180,6 +180,7 @@ def test_the_stock_is_a_shell_until_there_is_a_result():
     assert points[4:, 2].tolist() == [0.5] * 4
 
 
+@pytest.mark.slow
 def test_a_mesh_is_the_part_of_a_job():
     start()
     Gui.activateWorkbench("BeltGrindingWorkbench")

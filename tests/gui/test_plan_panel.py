@@ -34,6 +34,7 @@ def mouse(chart, share, kind):
     QtGui.QApplication.sendEvent(chart, event)
 
 
+@pytest.mark.slow
 def test_from_the_limits_to_a_planned_program():
     doc, _, path = prepared()
     steps = doc.UndoCount
@@ -76,6 +77,7 @@ def test_from_the_limits_to_a_planned_program():
     assert list(path.Feeds) == feeds and not plan.Applied and not plan.OutOfDate
 
 
+@pytest.mark.slow
 def test_cancel_leaves_all_as_it_was_and_mistakes_are_told():
     doc, _, path = prepared()
     menu("Plan feeds...")

@@ -119,6 +119,7 @@ def test_a_recording_is_played_and_leaves_the_document_as_it_was():
     assert not any(dock.isVisible() or dock.clock.isActive() or dock.scene for dock in docks)
 
 
+@pytest.mark.slow
 def test_a_run_without_recording_forgets_the_old_one():
     job, doc, _ = prepared()
     dock = record()

@@ -76,11 +76,13 @@ ROWS = ["L P[1] 9mm/sec FINE", "L P[2] R[5:speed]mm/sec FINE", "L P[3] 9mm/sec F
 NO_PATH_ROWS = ["L P[1] 9mm/sec FINE", "L PR[2] 9mm/sec FINE", "L P[3] 9mm/sec FINE Offset,PR[15]"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("language", ["en", "de"])
 def test_values_are_typed_kept_and_saved_where_asked(freecad, language):
     run(freecad, values_are_typed, language)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("language", ["en", "de"])
 def test_a_program_without_a_path_gets_it_by_its_values(freecad, language):
     run(freecad, a_path_by_values, language)

@@ -25,6 +25,7 @@ def prepared():
     return doc, job
 
 
+@pytest.mark.slow
 def test_the_menus_report_is_that_of_the_document():
     doc, job = prepared()
     opened = []

@@ -37,6 +37,7 @@ def chosen(release, function, *arguments):
     freecad.call(function, *arguments, window=True, fresh=True, variables=variables)
 
 
+@pytest.mark.slow
 def test_a_core_for_another_python_is_named_with_the_way_out(release):
     core = release[1] / "beltgrinding_core.cpython-37m-x86_64-linux-gnu.so"
     core.write_bytes(b"\x7fELF of another time")
@@ -46,6 +47,7 @@ def test_a_core_for_another_python_is_named_with_the_way_out(release):
     chosen(release, another_python)
 
 
+@pytest.mark.slow
 def test_a_core_that_the_loader_refuses_says_why(release):
     import importlib.machinery
 
@@ -54,6 +56,7 @@ def test_a_core_that_the_loader_refuses_says_why(release):
     chosen(release, refused_by_the_loader, suffix)
 
 
+@pytest.mark.slow
 def test_a_core_for_another_opencascade_is_refused_before_it_is_loaded(release):
     import importlib.machinery
 
@@ -63,6 +66,7 @@ def test_a_core_for_another_opencascade_is_refused_before_it_is_loaded(release):
     chosen(release, another_opencascade)
 
 
+@pytest.mark.slow
 def test_a_missing_python_package_is_named(release):
     (release[1] / "jsonschema.py").write_text(
         "raise ModuleNotFoundError(\"No module named 'jsonschema'\", name='jsonschema')\n"
@@ -102,6 +106,7 @@ def test_the_manual_leads_from_page_to_page_and_shows_its_pictures():
     assert view.toPlainText() == home
 
 
+@pytest.mark.slow
 @pytest.mark.freecad(window=True, fresh=True)
 def test_freecad_starts_without_the_core():
     import sys

@@ -53,6 +53,7 @@ def stored(doc):
     return says, [obj.Name for obj in Gui.Selection.getSelection()]
 
 
+@pytest.mark.slow
 def test_menus_and_panels_make_the_job_that_a_macro_makes():
     by_hand = stored(prepare_by_hand().Document)
     FreeCAD.closeDocument("work")
@@ -89,6 +90,7 @@ def test_from_a_selected_face_to_the_coloured_deviation():
     assert brown > 10000
 
 
+@pytest.mark.slow
 def test_cancel_and_undo_take_back():
     job = prepare_by_hand()
     doc = job.Document

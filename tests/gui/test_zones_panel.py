@@ -32,6 +32,7 @@ def started():
     return SimpleNamespace(EDGE=EDGE, NAME=NAME, SHOTS=SHOTS, THIN=THIN, doc=doc, job=job)
 
 
+@pytest.mark.slow
 def test_all_of_a_zone_is_in_sight_and_typed():
     here = started()
     EDGE, NAME, SHOTS, THIN, doc, job = (

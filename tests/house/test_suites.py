@@ -138,6 +138,7 @@ def test_what_is_marked_slow_is_left_to_all_and_nothing_else(checkout, options, 
 
 # Files all of whose tests are slow: the file whose quick tests are of the same kind.
 WHOLLY_SLOW = {
+    "gui/test_german_figures.py": "gui/test_translations.py",
     "gui/test_language.py": "gui/test_translations.py",
     "gui/test_panel_width.py": "gui/test_translations.py",
     "gui/test_tutorial.py": "gui/test_work.py",

@@ -146,6 +146,7 @@ def test_another_file_of_a_result_is_told(result, tmp_path, name):
         assert told(lambda: Result.read(copy), path) != is_list, text
 
 
+@pytest.mark.slow
 def test_a_verdict_and_a_summary_of_other_keys_are_told_or_read(result, tmp_path):
     copy = Path(shutil.copytree(result, tmp_path / "copy"))
     for name in ("verdict.json", "summary.json"):

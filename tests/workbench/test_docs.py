@@ -20,6 +20,7 @@ def blocks(page, heading):
     return [re.sub(r"^ {4}", "", one, flags=re.M).strip("\n") for one in BLOCK.findall(part)]
 
 
+@pytest.mark.slow
 def test_the_readme_macro_prints_what_it_says(freecad):
     macro, wanted = blocks((ROOT / "README.md").read_text(), "A macro")
     assert sum(bool(line) for line in macro.splitlines()) < 10

@@ -351,6 +351,7 @@ def test_file_open_and_import_read_programs():
     assert len([o for o in job.Group if o.Name.startswith("RobotPath")]) == 2
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not (SHARED / "data").is_dir(), reason=f"no shared data at {SHARED}")
 @pytest.mark.freecad
 def test_a_real_part_and_program_in_a_document():

@@ -162,6 +162,7 @@ def test_languages_without_external_axes_are_refused(laid, tmp_path):
         writing.write(tmp_path / "w.script", job, whole)
 
 
+@pytest.mark.slow
 def test_a_robot_out_of_reach_is_placed(laid, tmp_path):
     far = {**KUKA, "base_from_robot": {"position_mm": [-2500, 30, -350]}, "program": {"home_joints_deg": HOME}}  # fmt: skip
     job = cell(far, laid=laid)

@@ -254,6 +254,7 @@ def test_no_zone_calls_for_it_no_event(ground):
     assert not of_finish(judged_again(ground, [{"name": "a", "tolerance_mm": [-1, 1]}]))
 
 
+@pytest.mark.slow
 def test_files_counts_and_a_studys_columns_have_them(tmp_path):
     job = lined(finish_job([zone(Ra_max_um=3.0, lay="X")]))
     path = tmp_path / "job.json"

@@ -103,6 +103,7 @@ def test_the_command_line_takes_a_device(tmp_path, capsys):
     assert "--form is convert's" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "controller, form", [("krc4", "spline"), ("krc2", "zones"), ("", "spline")]
 )

@@ -247,6 +247,7 @@ LATER = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("afterwards")
 @pytest.mark.parametrize("task", LATER)
 def test_all_that_is_done_is_cancelled_and_limited(tmp_path, stand_in, monkeypatch, task):

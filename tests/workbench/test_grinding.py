@@ -59,6 +59,7 @@ def test_too_much_stock_for_the_least_feed_repeats_the_passes():
     assert len(poses) == len(found.laid["frames"]) and len(poses) % repeats == 0
 
 
+@pytest.mark.slow
 def test_without_a_device_the_force_stays():
     found = grinding.grind(job_of(), PASSES, QUICK)
     assert set(found.plan.factors) == {1.0}
@@ -107,6 +108,7 @@ def test_a_part_alone_becomes_a_program(tmp_path, capsys):
     assert cli.main(begin) == 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "options, words",
     [

@@ -450,6 +450,7 @@ def keys():
         seen.add(part)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("key", keys())
 def test_a_changed_key_never_takes_what_was_made_of_the_old_one(key, warm, folder):
     stages, before = warm
@@ -531,6 +532,7 @@ PLACES = {  # (program, its pose): whether steps before it are taken from the ru
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "control, timing", [("force", "constant_feed"), ("position", "trapezoidal")]
 )

@@ -73,6 +73,7 @@ def test_an_edge_beyond_the_first_grid_is_found_at_every_spacing():
         single_contact.run(single_contact.validate({**far, "spacing_mm": 0.5}))
 
 
+@pytest.mark.slow
 def test_a_rib_that_no_cell_shows_is_blamed_on_the_cells():
     job = plate_job()
     job["design"] = {"brep": plate(60.0, 0.04).write_brep()}

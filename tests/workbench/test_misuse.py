@@ -73,6 +73,7 @@ BAD_NAMES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", BAD_NAMES)
 @pytest.mark.parametrize("key", ["design", "stock", "program", "surrogate"])
 def test_a_file_that_is_none_is_one_line(tmp_path, job, name, key):

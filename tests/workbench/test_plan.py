@@ -249,6 +249,7 @@ def test_a_plan_is_never_worse(job, planned):
     assert np.array_equal(again.old, again.new)
 
 
+@pytest.mark.slow
 def test_the_second_opinion_is_a_finer_run(job):
     chosen = copy.deepcopy(job)
     chosen["sampling"]["spacing_mm"] = 0  # by the part and the wheel
@@ -264,6 +265,7 @@ def test_the_second_opinion_is_a_finer_run(job):
     assert plan.checked["after"]["in_tolerance"] == share
 
 
+@pytest.mark.slow
 def test_files_of_a_plan(job, planned, tmp_path):
     plan, _ = planned
     source = job["programs"][0]["file"]

@@ -239,6 +239,7 @@ def test_passes_are_laid_and_planned_and_applied_together():
         assert "one raster path" in str(error), error
 
 
+@pytest.mark.slow
 @pytest.mark.freecad
 def test_what_is_told_is_what_the_file_does():
     write_pass()

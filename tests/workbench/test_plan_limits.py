@@ -120,6 +120,7 @@ def test_force_changes_no_faster_than_may_be_in_time(job):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("limit", ["pressure_max_MPa", "heat_max_MPa_m_s", "law"])
 def test_forces_keep_to_pressure_and_heat(job, limit):
     settings = {**SETTINGS, "force_min_N": 5.0, "force_max_N": 120.0, "feed_min_mm_s": 60.0}

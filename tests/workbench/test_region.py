@@ -80,6 +80,7 @@ def ground(tmp_path):
     return tmp_path / "result", job, result
 
 
+@pytest.mark.slow
 def test_only_what_a_result_has_left(tmp_path):
     folder, job, result = ground(tmp_path)
     points, _ = region.of_result(folder, 0.06)

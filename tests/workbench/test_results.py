@@ -81,6 +81,7 @@ def test_a_folder_that_somebody_works_in_stays_the_same_folder(tmp_path, results
     assert out.stat().st_ino == before and which(out, results) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("at", range(40))
 def test_what_fails_on_the_way_leaves_the_old_or_the_new(tmp_path, results, way, at, monkeypatch):
     """Each call of the file system fails in turn, or Ctrl-C comes there."""
@@ -318,6 +319,7 @@ OUTPUTS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", OUTPUTS, ids=lambda command: command[0])
 def test_no_command_writes_over_its_input_or_over_another_s_file(
     tmp_path, results, command, capsys

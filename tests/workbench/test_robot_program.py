@@ -156,6 +156,7 @@ def test_a_program_goes_from_home_to_home_and_kdl_agrees(laid, tmp_path):
     finer(job, whole)
 
 
+@pytest.mark.slow
 def test_the_same_seed_plans_the_same_program(laid):
     job = cell(laid=laid, bodies=[POST])
     moves = [writing.plan_job(job).moves for _ in range(2)]
@@ -239,6 +240,7 @@ def run(*arguments):
     )
 
 
+@pytest.mark.slow
 def test_what_collides_or_is_out_of_reach_is_not_written(laid, tmp_path):
     block = {"name": "block", "frame": "part", "brep": brep([45, 0, 20], [55, 60, 120])}
     given = tmp_path / "job.json"
@@ -539,6 +541,7 @@ def test_arcs_lie_between_the_ways_beside_their_corner():
     assert places[0][:3, 3] == pytest.approx([9, 0, 0])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name, robot, home, line",
     [

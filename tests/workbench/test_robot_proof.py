@@ -26,12 +26,14 @@ def planned(laid):
     return job, writing.plan_job(job)
 
 
+@pytest.mark.slow
 def test_a_sound_program_is_proved(planned):
     found = bench.proved(*planned)
     assert found["met"] == found["beyond"] == 0 and found["kdl"] < 1e-9
     assert found["places"] > 1000 and 0.0 < found["speed"] <= 100.0
 
 
+@pytest.mark.slow
 def test_what_stands_in_the_way_is_found(planned, laid):
     job, whole = planned
     link = next(k for k, one in enumerate(whole.moves) if one.note == "pass 1")
@@ -41,6 +43,7 @@ def test_what_stands_in_the_way_is_found(planned, laid):
     assert found["met"] > 10
 
 
+@pytest.mark.slow
 def test_a_joint_beyond_its_limit_and_a_wrong_pose_are_found(planned):
     job, whole = planned
     robot = records.plain(job.robot)

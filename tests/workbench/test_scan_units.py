@@ -57,6 +57,7 @@ def top(vertices, triangles):
     return triangles[normal[:, 2] > 0.5 * np.linalg.norm(normal, axis=1)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("unit", [0.001, 10.0, 25.4, 304.8, 1000.0])
 @pytest.mark.parametrize("kind", ["mesh", "cloud"])
 def test_a_scan_in_another_unit_is_refused_by_its_name(result, ground, tmp_path, unit, kind):

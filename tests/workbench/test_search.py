@@ -143,6 +143,7 @@ def test_what_is_given_stays(small):
     assert rows == {("direction", 0.0, 1.0, 0.0, 0.0)}
 
 
+@pytest.mark.slow
 def test_without_time_or_wish_it_gives_what_the_rules_give(small):
     job = job_of(trough())
     by_hand = grinding.grind(job, ACROSS, QUICK)

@@ -56,6 +56,7 @@ def batch(coarse, scans, tmp_path_factory):
     return folder, found
 
 
+@pytest.mark.slow
 def test_each_part_is_sorted_with_its_reason(batch):
     folder, found = batch
     rows = {row["part"]: row for row in found.parts}

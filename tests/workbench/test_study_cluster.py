@@ -254,6 +254,7 @@ def loops():
     return sum(thread.name == "IO loop" for thread in threading.enumerate())
 
 
+@pytest.mark.slow
 def test_a_scheduler_that_is_not_there_or_alone_is_told(tmp_path, by_hand, monkeypatch):
     before = loops()
     monkeypatch.setattr(cluster, "WAIT_S", 3.0)

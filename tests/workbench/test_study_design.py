@@ -60,6 +60,7 @@ KINDS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["monte_carlo", "latin_hypercube", "sobol", "sobol_indices"])
 @pytest.mark.parametrize("entry, wanted", KINDS)
 def test_what_is_drawn_is_distributed_as_asked(method, entry, wanted):
@@ -156,6 +157,7 @@ def test_values_come_as_often_as_their_weights():
     assert found.count("local") == 300 and found.count("local_linear") == 100
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "entries, options, code, told",
     [

@@ -314,6 +314,7 @@ def test_the_motions_come_back_from_their_file(job, tmp_path):
             motions.read(tmp_path / motions.FILE)
 
 
+@pytest.mark.slow
 def test_a_real_blades_edges_are_a_zone_of_their_own():
     """The marine propeller blade: two sides that meet in sharp leading and trailing edges."""
     path = SHARED / "data" / "cad" / "blade_marine_solid_derived.step"

@@ -142,6 +142,7 @@ def test_colours_say_the_same_from_every_side(page, ground):
         assert np.median(np.abs(seen - expected)) <= 3, turn
 
 
+@pytest.mark.slow
 def test_each_mode_has_its_colours_and_legend(page, ground):
     field = ground[1].field
     labels = page.value("[...document.getElementById('view-mode').options].map(o => o.label)")

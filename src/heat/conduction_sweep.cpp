@@ -44,6 +44,7 @@ void Conduction::hand_up(bool all) {
     if (nodes.empty() && coarse_.empty()) return;
     const auto from_heat = [this](const Vec3& point) { return way(point); };
     coarse_.step(zone_time_, state_.heated, from_heat, all);
+    if (coarse_.empty()) return;  // the part has too few nodes to be coarser
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         const std::uint32_t k = nodes[i];
         const float keep = coarse_.kept(ages[i]);

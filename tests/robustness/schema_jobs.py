@@ -258,7 +258,8 @@ class _Maker:
     def robot_external_axes(self):
         track = {"kind": "linear", "carries": "robot", "axis": [0.0, 1.0, 0.0]}
         limits = {"lower": -500.0, "upper": 500.0, "position": self.dice.uniform(-500, 500)}
-        return self.dice.choice(([], [{**track, **limits}]))
+        more = {"home": self.dice.uniform(-500, 500), "max_speed": 200.0, "origin_mm": [0.0] * 3}
+        return self.dice.choice(([], [{**track, **limits}], [{**track, **limits, **more}]))
 
     def robot_start_joints_deg(self):
         return self.dice.choice(([], [self.dice.uniform(-90, 90) for _ in range(6)]))

@@ -119,6 +119,8 @@ def robot_job(folder):
     del job["programs"][1:]
     job["robot"] = {"model": copy.deepcopy(ROBOT)}
     job["robot"]["base_from_robot"] = {"position_mm": [-900, 0, -600]}
+    track = {"kind": "linear", "carries": "robot", "axis": [0, 1, 0], "lower": -300, "upper": 300}
+    job["robot"]["external_axes"] = [{**track, "position": 20}]
     job["design"] = {"file": str(folder / "plate.brep"), "faces": [box()[1]]}
     job["cell"]["check_collisions"] = True
     body = job["cell"]["bodies"][0]
@@ -210,6 +212,11 @@ VALUES = {
     "programs.0.poses.0.qy": lambda _: 0.05,
     "programs.0.poses.0.qz": lambda _: 0.05,
     "programs.0.roll": lambda _: "along",
+    "robot.model.urdf": lambda folder: str(folder / "none.urdf"),
+    "robot.model.base_link": lambda _: "base",
+    "robot.model.tip_link": lambda _: "tip",
+    "robot.packages": lambda folder: [str(folder)],
+    "robot.load.inertia_kg_m2": lambda _: [0.1, 0.1, 0.1],
     "law.calibration.parameters": lambda _: ["coefficient"],
     "law.calibration.covariance": lambda _: [[1e-12]],
     "law.calibration.widening": lambda _: 1.5,
@@ -317,6 +324,10 @@ def leaves(rule, path=()):
 REFUSED = {  # the whole run is an error
     "belt_machine.compliance.surrogate_file",  # there is no such file
     "design.flip_faces",  # of a solid
+    "robot.model.urdf",  # beside joints
+    "robot.model.base_link",  # without a URDF
+    "robot.model.tip_link",
+    "robot.packages",
 }
 
 

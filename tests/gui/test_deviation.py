@@ -49,6 +49,7 @@ def test_the_picture_shows_both_ramps(demo):
     pictures.keep("blade-deviation", (demo / "deviation.png").read_bytes())
 
 
+@pytest.mark.slow  # the picture is made by the test before
 def test_the_picture_is_the_manuals(freecad, demo):
     pictures.check(freecad.call(release), ["blade-deviation"])
 

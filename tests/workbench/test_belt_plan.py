@@ -48,6 +48,7 @@ def cost_of(job, part, costs, counts):
     return sum(changing + sum(row["cost"] for row in lasts[:n]) for n in counts)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("belt_cost", [0.0, 0.05, 0.3, 50.0])
 def test_no_other_way_is_cheaper_for_twelve_parts(part, belt_cost):
     job, costs = job_of(), Costs(belt_cost, 1.0, 1.5)

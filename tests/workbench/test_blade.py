@@ -47,6 +47,7 @@ def test_the_program_says_what_the_raster_path_meant(example):
     assert len(program.motions) == 10 * 27
 
 
+@pytest.mark.slow
 def test_the_job_grinds_the_pressure_side(ground):
     summary = ground[0].summary
     assert 6000 < summary["design_area_mm2"] < 8000

@@ -203,6 +203,7 @@ os.write(2, b"noise")
     assert not [f for n, f in found.items() if n != "3" and ("pipe:" in f or f.endswith("held"))]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("handler", ["SIG_IGN", "reap"])
 def test_a_host_may_reap_its_children_itself(plate, tmp_path, handler):
     """And it may ignore SIGPIPE, and use subprocess at the same time."""

@@ -60,6 +60,7 @@ def wall(parts):
     return job_of(path, [floor_of(path)])
 
 
+@pytest.mark.slow
 def test_beside_a_wall_passes_are_left_out(wall):
     laid = raster_path.raster(wall, {**X, "where_it_collides": "leave_out"})
     contacts = on_passes(laid)
@@ -72,6 +73,7 @@ def test_beside_a_wall_passes_are_left_out(wall):
     assert laid["fit"].max() <= 0.5
 
 
+@pytest.mark.slow
 def test_beside_a_wall_the_wheel_cannot_lean_out_of_it(wall):
     """Leaning it away from the wall lifts the rim's other edge; the wheel's side is what meets the wall."""
     laid = raster_path.raster(wall, X)
@@ -114,6 +116,7 @@ def test_round_a_post_the_pass_is_interrupted(parts):
     assert f"Face{job['design']['faces'][0]}" in told
 
 
+@pytest.mark.slow
 def test_off_the_passes_it_is_lifted_no_higher_than_there_is_room(freecad, tmp_path):
     freecad.call(make_lid, tmp_path)
     path = tmp_path / "lid.brep"

@@ -205,6 +205,7 @@ def test_a_real_program_over_a_real_part():
         assert not (np.abs(inside[:2]) < 59).all() or not -200 < inside[2] < -16
 
 
+@pytest.mark.slow
 @pytest.mark.freecad
 def test_bodies_of_a_document_are_those_of_its_job():
     write_pass()
@@ -326,6 +327,7 @@ def test_radii_of_links_are_asked_for_as_seven():
         beltgrinding.run(arm_job([-1] * 7))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("preset", [one["id"] for one in library.robots()])
 def test_a_preset_has_the_shape_of_an_arm(preset):
     robot = robots.checked({"preset": preset})

@@ -26,6 +26,7 @@ def test_every_command_stands_under_one_task():
     assert sorted(listed) == sorted(COMMANDS.commands)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(COMMANDS.commands))
 def test_examples_are_read(name):
     assert EXAMPLES[name]

@@ -246,6 +246,7 @@ def contents(folder):
     return found
 
 
+@pytest.mark.slow
 def test_the_same_job_gives_the_same_bytes(tmp_path):
     (tmp_path / "job.json").write_text(json.dumps(process_job()))
     folders = [str(ROOT / "Mod" / "BeltGrinding"), str(Path(core.__file__).parent)]

@@ -36,6 +36,7 @@ def ground():
     return beltgrinding.run(curved())
 
 
+@pytest.mark.slow
 def test_it_holds_its_force_on_a_shorter_contact_than_a_flat_platen(ground):
     assert np.allclose(ground.steps["force"], 20.0, rtol=2e-3)
     assert "not_converged" not in ground.summary["events"]
@@ -142,6 +143,7 @@ def test_what_cannot_be_is_refused(platen, run, code):
     assert error.value.code == code, error.value
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["free_belt", "platen"])
 def test_the_runs_beyond_the_rollers_may_not_meet_the_part(kind):
     job = belt_job(kind)

@@ -53,6 +53,7 @@ def test_a_track_moves_the_robot_and_a_positioner_the_part():
     assert part[:3, :3] @ [1, 0, 0] == pytest.approx([0, 0, 1])
 
 
+@pytest.mark.slow
 def test_an_indexed_cell_is_the_cell_with_the_robot_there(laid):
     """Joints and clearances are those of a job whose robot and bodies stand where the axes put them."""
     post = {"name": "post", "frame": "base", "brep": brep([-70, -290, -350], [-10, -230, 350])}
@@ -105,6 +106,7 @@ def test_a_program_moves_them_with_the_arm_at_home(name, robot, laid, tmp_path):
     assert np.abs(again - wanted).max() < 1e-3
 
 
+@pytest.mark.slow
 def test_what_an_axis_runs_into_is_a_problem(laid, tmp_path):
     """A post beside the arm at home, that the track goes through; and a part that turns into one."""
     post = {"name": "post", "frame": "base", "brep": brep([-560, 330, -350], [-520, 370, 350])}
@@ -190,6 +192,7 @@ def test_a_robot_out_of_reach_is_placed(laid, tmp_path):
     assert by_hand._judged((), joints, 0).margin_deg <= told["least_margin_deg"]
 
 
+@pytest.mark.slow
 def test_a_positioner_is_turned_to_where_the_arm_reaches(laid):
     """The robot stands behind the work; the table must turn it about."""
     job = typed(cell(with_axes({**TURN, "origin_mm": [350, 30, 0]}), laid=laid))

@@ -54,6 +54,7 @@ def test_a_part_is_told_face_by_face(bush, capsys):
         assert all(one["face"] in found[k - 1]["neighbours"] for k in one["neighbours"])
 
 
+@pytest.mark.slow
 def test_the_table_and_the_picture_name_the_faces(bush, tmp_path, capsys):
     path = tmp_path / "faces.png"
     status, out, err = told(capsys, "faces", bush, "--picture", path)

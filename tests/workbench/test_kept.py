@@ -612,6 +612,7 @@ def warmth_and_finish(job):
 VARIANTS = [half_space, springy_robot, slow_force, dense_edges, warmth, finish, warmth_and_finish]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("variant", VARIANTS)
 def test_any_wheel_robot_and_part_go_on_from_where_the_program_is_the_same(variant, folder):
     def made(at=None):
@@ -637,6 +638,7 @@ HEAT_EDITS = {"conductivity_W_mK": 16.0, "heat_capacity_J_kgK": 490.0, "density_
 HEAT_EDITS |= {"friction": [0.3, 0.7], "burn_temperature_C": 21.0}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("key", HEAT_EDITS)
 def test_another_material_or_friction_takes_no_states(key, folder):
     job = raster_job(folder)
@@ -683,6 +685,7 @@ FILES = {  # of a job, and another that takes its place under its name
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FILES)
 def test_a_file_is_known_by_what_it_holds(name, folder):
     base, other = FILES[name]

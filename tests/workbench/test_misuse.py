@@ -94,6 +94,7 @@ def test_a_file_that_is_none_is_one_line(tmp_path, job, name, key):
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "text, words",
     [

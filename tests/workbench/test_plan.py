@@ -311,6 +311,7 @@ def _firsts(plan):
     return np.sort(np.unique(plan.commands.group, return_index=True)[1])
 
 
+@pytest.mark.slow
 def test_a_line_run_through_twice_has_one_feed(job, tmp_path):
     text = tmp_path.__class__(job["programs"][0]["file"]).read_text().splitlines()
     first = next(i for i, line in enumerate(text) if line.startswith("LIN"))
@@ -328,6 +329,7 @@ def test_a_line_run_through_twice_has_one_feed(job, tmp_path):
     assert written == ["twice.src"] and not warnings
 
 
+@pytest.mark.slow
 def test_a_feed_that_the_job_sets_is_written_into_every_line(job, tmp_path):
     given = copy.deepcopy(job)
     given["programs"][0]["feed_mm_s"] = 35.0

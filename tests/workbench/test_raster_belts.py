@@ -118,6 +118,7 @@ def test_a_leaned_belt_stands_on_its_edge(bent):
     assert pressing.shift(-0.1) == pytest.approx([0, -10, 0])
 
 
+@pytest.mark.slow
 def test_the_best_way_of_a_belt_goes_along_what_is_convex(bent):
     found = raster_path.raster(job_of(bent), {"along": "auto"})
     ways = [one for one in found["tried"] if "residual" in one]

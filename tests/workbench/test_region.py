@@ -169,6 +169,7 @@ def test_nonsense_is_an_error_that_says_so(settings):
         raster_path.raster(job_of(plate((25.0, 35.0, 6.0))), {**X, "step_over_mm": 0.0, **settings})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "key", ["clearance_mm", "lead_mm", "run_out_mm", "offset_mm", "approach_mm"]
 )

@@ -520,6 +520,7 @@ def study_file(tmp_path):
     return path
 
 
+@pytest.mark.slow
 def test_the_command_makes_counts_and_tells(study_file, tmp_path, capsys, made):
     out = str(tmp_path / "out")
     command = ["study", str(study_file), "-o", out, "--workers", "0"]

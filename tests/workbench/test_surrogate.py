@@ -40,6 +40,7 @@ def test_held_out_error_is_that_of_a_rough_surrogate(trained):
     assert report["held_out_approach_rms"] < 0.1
 
 
+@pytest.mark.slow
 def test_single_contact_agrees_with_the_rim(trained):
     folder, _ = trained
     shape = {"shape": "cylinder", "radius_mm": 40}

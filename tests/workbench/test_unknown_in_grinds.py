@@ -26,6 +26,7 @@ def told_deviation(law):
     return math.sqrt(law["calibration"]["covariance"][0][0])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("exponent", (0.7, 1.0, 1.5, 2.65))
 def test_the_interval_of_a_law_without_areas_holds_the_truth(exponent):
     random, count = np.random.default_rng(3), 12

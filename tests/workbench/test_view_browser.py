@@ -208,6 +208,7 @@ def test_a_point_tells_its_value_face_and_line(page, ground):
     assert page.value("document.getElementById('view-tip').hidden")
 
 
+@pytest.mark.slow
 def test_the_mouse_turns_shifts_and_zooms(page):
     left, top, width, height = page.box(CANVAS)
     x, y = left + 0.5 * width, top + 0.5 * height
@@ -395,6 +396,7 @@ def test_missing_samples_are_grey_and_say_so(browser, tmp_path, ground):
     page.close()
 
 
+@pytest.mark.slow
 def test_an_empty_trace_and_many_samples(browser, tmp_path, ground):
     """No motions: the colours stay at the end, and the page says so."""
     result = copy.copy(ground[1])

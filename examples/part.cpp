@@ -1,7 +1,6 @@
 // part PART.step|.iges|.brep|.stl FACE: grinds one pass over the middle of a face, under 0.3 mm of
 // stock, and prints what is in tolerance. Lengths in mm, forces in N, times in s.
 #include <beltgrinding/contact_factory.h>
-#include <beltgrinding/contact_frame.h>
 #include <beltgrinding/deviation.h>
 #include <beltgrinding/error.h>
 #include <beltgrinding/mesh_reader.h>

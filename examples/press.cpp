@@ -1,5 +1,4 @@
 #include <beltgrinding/contact_factory.h>
-#include <beltgrinding/contact_frame.h>
 #include <beltgrinding/simulation.h>
 
 #include <cstdio>

@@ -1,6 +1,5 @@
-#include "beltgrinding/contact_frame.h"
-
 #include "beltgrinding/error.h"
+#include "beltgrinding/tool_path.h"
 
 namespace beltgrinding {
 namespace {

@@ -254,7 +254,7 @@ def test_what_is_no_arm_gets_one_line(text, keys, message, tmp_path):
 def test_a_damaged_mesh_is_named_with_its_link(tmp_path):
     (tmp_path / "m.stl").write_bytes(b"nothing")
     found = robot(tmp_path, urdf({1: body('<mesh filename="m.stl"/>')}))
-    with pytest.raises(InputError, match="link link_1: .*m.stl"):
+    with pytest.raises(InputError, match="arm.urdf: link link_1: .*m.stl"):
         robots.links_of(found)
 
 

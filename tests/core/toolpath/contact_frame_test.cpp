@@ -1,4 +1,4 @@
-#include "beltgrinding/contact_frame.h"
+#include "beltgrinding/tool_path.h"
 
 #include <gtest/gtest.h>
 

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..base.files import cannot_be_written
-from ..base.kinds import Array, Context, Json
+from ..base.kinds import Array, Context, Facts, Json
 from ..engine import InputError, core
 from ..cell.tool_path import tool_path
 from ..job import robot_time
@@ -225,14 +225,19 @@ class Work:
             zones = functools.partial(zones_written, name=EXPORTED, form=robot_time.form(data))
             ground = grinding.grind(data, self.raster, searched, first, told, zones)
             plan = ground.plan
-        checked = None
+        checked: from_file.Checked | None = None
+        refused: Facts = []
         if whole:
             with job_inputs.scratch_folder() as folder:
                 checked = from_file.check(
                     plan,
                     folder,
                     functools.partial(
-                        written.entries, folder=folder, read=self.read, suffix=Path(EXPORTED).suffix
+                        written.entries,
+                        folder=folder,
+                        read=self.read,
+                        suffix=Path(EXPORTED).suffix,
+                        refused=refused,
                     ),
                     context.part(PLANNING, 1.0),
                     told,
@@ -240,6 +245,7 @@ class Work:
                     refine=False,
                 )
             plan = checked.plan
+            checked = checked._replace(notes=[*refused, *checked.notes])
         if ground is not None:
             if checked is not None:
                 plan = plan._replace(checked={"after": checked.figures})

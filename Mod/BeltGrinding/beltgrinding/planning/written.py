@@ -10,8 +10,8 @@ import numpy as np
 
 from ..base import records
 from ..base.files import cannot_be_written
-from ..base.kinds import Json, known
-from ..engine import InputError
+from ..base.kinds import Facts, Json, known
+from ..engine import Fact, InputError
 from ..job import robot_time
 from ..job.poses import listed_poses, program_name
 from ..job.typed import typed
@@ -85,12 +85,14 @@ def write_changed(
 
 
 def entries(
-    found: Plan, folder: Path | str, read: Sequence[Json | None], suffix: str
+    found: Plan, folder: Path | str, read: Sequence[Json | None], suffix: str, refused: Facts
 ) -> list[dict[str, Any]]:
     """Writes all programs of a ``Plan`` into ``folder`` and returns their entries in a job. ``read``: of each program the
     entry with which a job reads its file, None where its poses were made here; those become files with ``suffix``. A program
-    whose file has no place for what is planned stays pose by pose. Raises InputError."""
+    whose file has no place for what is planned stays pose by pose, and ``refused`` becomes why. Raises InputError.
+    """
     programs = []
+    refused.clear()
     for number, entry in enumerate(read):
         home = Path(folder, str(number))  # two files may have one name
         home.mkdir(exist_ok=True)
@@ -102,6 +104,15 @@ def entries(
             continue
         file = home / Path(entry["file"]).name
         made, reason = write_read(found, number, entry["file"], file, entry)
+        if reason is not None:
+            refused.append(
+                Fact(
+                    "planning.not_read_back",
+                    "{program}: its file cannot take the plan ({reason}); its poses were simulated in place of the file",
+                    program=name,
+                    reason=reason,
+                )
+            )
         programs.append(made if reason else {**made, "file": str(file)})
     return programs
 

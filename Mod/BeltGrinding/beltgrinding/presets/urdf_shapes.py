@@ -11,7 +11,6 @@ from xml.etree import ElementTree
 import numpy as np
 
 from ..base import kept
-from ..base.files import in_file
 from ..base.kinds import Array, Floats, Json
 from ..base.regular_files import read_regular
 from ..engine import InputError, core
@@ -144,7 +143,7 @@ def _read(tree: Tree, file: Path, piece: Piece) -> Mesh:
         mesh = core.read_mesh(str(file), METRE)
     except InputError as error:
         error = error.within("presets.urdf_of_link", "link {link}: ", link=piece.link)
-        raise in_file(error, tree.file) from None
+        raise error.within("files.in_file", "{file}: ", file=tree.file) from None
     scale = tree.vector(piece.element[0], "scale", "1 1 1", piece.link)
     faces = np.asarray(mesh.triangles, dtype=int)
     if np.prod(scale) < 0.0:  # mirrored: outside stays outside

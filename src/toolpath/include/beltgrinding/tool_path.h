@@ -33,6 +33,11 @@ Frame interpolate(const Frame& a, const Frame& b, double t);
 /// rad, within [0, pi]
 double angle_between(const Frame& a, const Frame& b);
 
+/// The contact frame at `point` (mm): z runs `into` the work, x follows `along`, the belt's travel,
+/// as far as it lies across z, and y is the wheel's axle. Neither need be a unit vector. Throws
+/// InputError if a number is not finite, `into` has no length, or `along` is parallel to it.
+Frame contact_frame(const Vec3& point, const Vec3& into, const Vec3& along);
+
 /// How the robot's speed goes along the path.
 struct TimeLaw {
     /// How time passes along the path.

@@ -101,7 +101,7 @@ class _Rows:
 
 
 def _in_unit(title: str) -> str:
-    """A column's title with the unit that deviations are told in."""
+    """Return a column's title with the unit of deviations."""
     return title.format(deviation_unit().symbol)
 
 

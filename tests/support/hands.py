@@ -287,8 +287,9 @@ def _come_to_rest(quiet, patience=3, most=30):
 
 def _as_everywhere():
     """Shows what every computer or test run writes otherwise as one text: the time that a simulation
-    took, the folder of a file. Returns [(widget, its text)].
+    took, the folder of a file; and an empty clipboard, by which *Paste* is grey. Returns [(widget, its text)].
     """
+    QtGui.QApplication.clipboard().clear()
     QtGui.QApplication.setCursorFlashTime(0)
     replaced = []
     for kind in (QtGui.QLabel, QtGui.QLineEdit):

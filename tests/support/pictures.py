@@ -16,7 +16,7 @@ RELEASE = [
 ]  # of FreeCAD, that the kept pictures are of; others draw frames and icons their way
 WINDOW = 12  # pixels; a character of a label is as large
 SAME = 0.2  # of 255: of pictures taken twice
-ALIKE = 3.0  # of 255: another rounding of colours is below, another character above
+ALIKE = 7.0  # of 255: a slanting line drawn by another processor is below, another digit (8 to 24) above
 
 
 def referenced():

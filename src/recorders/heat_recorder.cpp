@@ -76,13 +76,14 @@ void HeatRecorder::pressed(const Press& pressed) {
                       count, forces_.data());
         for (std::size_t k = 0; k < count; ++k) press(shares[k].node, forces_[k]);
     };
-    map.for_pressed_blocks(pressure, press_block, [&](std::size_t position, double value) {
-        const std::size_t block = position / kLanes, lane = position % kLanes;
-        const float area = blocks_.block(static_cast<std::uint32_t>(block)).area[lane];
-        const NodeShare* share = &shares_[first_[block]];
-        while ((share->samples >> lane & 1U) == 0) ++share;
-        press(share->node, value * std::max(area, 0.0f));
-    });
+    map.for_pressed_blocks(
+        pressure, press_block, [&](std::size_t position, double value, double on) {
+            const std::size_t block = position / kLanes, lane = position % kLanes;
+            const float area = blocks_.block(static_cast<std::uint32_t>(block)).area[lane];
+            const NodeShare* share = &shares_[first_[block]];
+            while ((share->samples >> lane & 1U) == 0) ++share;
+            press(share->node, value * on * std::max(area, 0.0f));
+        });
     // Their samples' mean pressure is the nodes'. The force is the contact's, to the last bit.
     const ThermalNodes& nodes = request_.part->nodes();
     double sum = 0.0;

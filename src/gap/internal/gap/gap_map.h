@@ -124,10 +124,13 @@ class GapMap {
             for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane)
                 if (values[lane] > 0.0f) visit(first + lane, values[lane]);
         };
-        for_pressed_blocks(pressure, visit_block, visit);
+        for_pressed_blocks(
+            pressure, visit_block,
+            [&visit](std::size_t position, double value, double) { visit(position, value); });
     }
     /// The same, with visit_block(first position, values) for the positions of a whole block, some
-    /// of which have none.
+    /// of which have none, and visit(position, MPa, share) for others, on a share of whose area it
+    /// is.
     template <class VisitBlock, class Visit>
     void for_pressed_blocks(const DisplacedPressure& pressure, VisitBlock visit_block,
                             Visit visit) const {
@@ -141,12 +144,12 @@ class GapMap {
         for (const Footprint& f : footprints) {
             if (!f.nearest || !(f.inside > 0.0f)) continue;
             if (const double value = value_at(grid_, f, pressure.pressure); value > 0.0)
-                visit(f.position, value);
+                visit(f.position, value, double{f.inside});
         }
         placed_.beside().for_reached(grid_, footprints, pressure.beside,
-                                     [&](std::size_t footprint, double, double value) {
+                                     [&](std::size_t footprint, double share, double value) {
                                          if (value > 0.0)
-                                             visit(footprints[footprint].position, value);
+                                             visit(footprints[footprint].position, value, share);
                                      });
     }
 

@@ -9,7 +9,10 @@ from PIL import Image
 ROOT = Path(__file__).resolve().parents[2]
 MADE = ROOT / "build" / "pictures"  # where tests put them; tools/pictures takes them from there
 IMAGES = ROOT / "docs" / "images"
-APART = {"contact-reference": "tools/contact_picture.py"}  # CalculiX takes minutes
+APART = {
+    "contact-reference": "tools/contact_picture.py",  # CalculiX takes minutes
+    "validation": "tests/benchmark/validation_bench.py",  # with its page
+}
 RELEASE = [
     0,
     20,

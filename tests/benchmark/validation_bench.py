@@ -5,13 +5,10 @@ import datetime
 import textwrap
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-from matplotlib import pyplot  # noqa: E402
-
-import beltgrinding  # noqa: E402
-from support.reference_cases import all_cases  # noqa: E402
+import beltgrinding
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from support.reference_cases import all_cases
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 COLUMNS = 4
@@ -21,8 +18,8 @@ HEAD = """# Validation
 How wrong is the simulator, and where most? Each case compares it with what others say: finite elements, closed forms,
 measured grinds. Version {version}, {date}. Write this page anew with `tools/bench validation`.
 
-The error of `approach` and `rows` is against CalculiX: the wheel's way at that force, and the forces of rows of 1 mm
-(sum of the differences over the force). In a group the case that misses its aim most comes first.
+Elastic contact is compared with CalculiX: `approach` is the wheel's way at that force. `rows` adds up the differences
+of the forces of rows of 1 mm, over the force. In a group the case that misses its aim most comes first.
 """
 TAIL = """
 ## Curves
@@ -77,7 +74,9 @@ def page(cases):
 def draw(cases, path):
     """One small chart for each case."""
     rows = -(-len(cases) // COLUMNS)
-    figure, charts = pyplot.subplots(rows, COLUMNS, figsize=(14, 2.5 * rows), dpi=90)
+    figure = Figure(figsize=(14, 2.5 * rows), dpi=90)
+    FigureCanvasAgg(figure)
+    charts = figure.subplots(rows, COLUMNS)
     for chart in charts.flat[len(cases) :]:
         chart.axis("off")
     for case, chart in zip(cases, charts.flat):

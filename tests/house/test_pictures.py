@@ -52,6 +52,22 @@ def test_the_same_picture_passes(labelled):
     assert pictures.stale([KEPT]) == []
 
 
+@pytest.mark.parametrize("colour, same", [((220, 0, 140), True), ((90, 90, 90), False)])
+def test_the_steps_of_a_coloured_line_may_lie_elsewhere(labelled, colour, same):
+    def line(steps):
+        def draw(pixels):
+            image = Image.fromarray(pixels)
+            for k, x in enumerate(range(700, 800, 20)):
+                ImageDraw.Draw(image).line((x + steps, 300 - k, x + 20 + steps, 300 - k), colour)
+            return np.asarray(image)
+
+        return draw
+
+    labelled("30 N", line(0), "kept")
+    labelled("30 N", line(4))
+    assert (pictures.stale([KEPT]) == []) == same
+
+
 @pytest.mark.parametrize(
     "other", [np.flipud, lambda pixels: pixels[:-1], lambda pixels: 255 - pixels]
 )

@@ -19,7 +19,8 @@ RELEASE = [
 ]  # of FreeCAD, that the kept pictures are of; others draw frames and icons their way
 WINDOW = 12  # pixels; a character of a label is as large
 SAME = 0.2  # of 255: of pictures taken twice
-ALIKE = 7.0  # of 255: a slanting line drawn by another processor is below, another digit (8 to 24) above
+ALIKE = 3.0  # of 255: another rounding of colours is below, another character above
+COLOURFUL = 60  # of 255, from the least to the greatest channel: no text is
 
 
 def referenced():
@@ -55,12 +56,30 @@ def largest_difference(one, other):
     a, b = (np.asarray(Image.open(path).convert("RGB")).astype(float) for path in (one, other))
     if a.shape != b.shape:
         return float("inf"), None
-    sums = np.pad(np.abs(a - b).max(axis=2).cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))
+    away = np.maximum(_away(a, b), _away(b, a))
+    sums = np.pad(away.cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))
     rows, columns = (min(WINDOW, size) for size in a.shape[:2])
     inside = sums[rows:] - sums[:-rows]
     inside = inside[:, columns:] - inside[:, :-columns]
     y, x = np.unravel_index(inside.argmax(), inside.shape)
     return float(inside.max() / (rows * columns)), (int(x), int(y))
+
+
+def _away(one, other):
+    """(rows, columns) how far each colour of one picture is from the other's there. A colourful one may lie a pixel
+    aside: where a slanting line has its steps is the processor's rounding.
+    """
+    found = np.abs(one - other).max(axis=2)
+    colourful = np.maximum(np.ptp(one, axis=2), np.ptp(other, axis=2)) > COLOURFUL
+    rows, columns = np.nonzero(colourful & (found > 0))
+    for down in (-1, 0, 1):
+        for right in (-1, 0, 1):
+            at = np.clip(rows + down, 0, one.shape[0] - 1), np.clip(
+                columns + right, 0, one.shape[1] - 1
+            )
+            near = np.abs(one[rows, columns] - other[at]).max(axis=1)
+            found[rows, columns] = np.minimum(found[rows, columns], near)
+    return found
 
 
 def keep(name, picture):

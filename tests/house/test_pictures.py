@@ -57,8 +57,9 @@ def test_the_steps_of_a_coloured_line_may_lie_elsewhere(labelled, colour, same):
     def line(steps):
         def draw(pixels):
             image = Image.fromarray(pixels)
-            for k, x in enumerate(range(700, 800, 20)):
-                ImageDraw.Draw(image).line((x + steps, 300 - k, x + 20 + steps, 300 - k), colour)
+            ends = [700, *(x + steps for x in range(720, 800, 20)), 800]
+            for k, (x, end) in enumerate(zip(ends, ends[1:])):
+                ImageDraw.Draw(image).line((x, 300 - k, end, 300 - k), colour)
             return np.asarray(image)
 
         return draw

@@ -92,25 +92,34 @@ class Whole:
     @classmethod
     def from_data(cls, data: Json) -> Whole:
         """Of what ``data`` gives."""
-        moves = [
-            Move(
-                **{
-                    **one,
-                    "frame": np.array(one["frame"]),
-                    "joints_deg": None
-                    if one["joints_deg"] is None
-                    else np.array(one["joints_deg"]),
-                    "external": tuple(one["external"]),
-                }
-            )
-            for one in data["moves"]
-        ]
-        incidents = [
-            Incident(**{**one, "fact": _fact(one["fact"]), "bodies": tuple(one["bodies"])})
-            for one in data["incidents"]
-        ]
-        told = ([_fact(one) for one in data[key]] for key in ("problems", "notes"))
-        return cls(moves, *told, dict(data["figures"]), incidents)
+        problems, notes = ([_fact(one) for one in data[key]] for key in ("problems", "notes"))
+        return cls(
+            [_move(one) for one in data["moves"]],
+            problems,
+            notes,
+            dict(data["figures"]),
+            [_incident(one) for one in data["incidents"]],
+        )
+
+
+def _move(data: Json) -> Move:
+    joints = None if data["joints_deg"] is None else np.array(data["joints_deg"])
+    given: dict[str, Any] = {
+        **data,
+        "frame": np.array(data["frame"]),
+        "joints_deg": joints,
+        "external": tuple(data["external"]),
+    }
+    return Move(**given)
+
+
+def _incident(data: Json) -> Incident:
+    given: dict[str, Any] = {
+        **data,
+        "fact": _fact(data["fact"]),
+        "bodies": tuple(data["bodies"]),
+    }
+    return Incident(**given)
 
 
 def _fact(data: Json) -> Fact:

@@ -49,7 +49,8 @@ class Walk:
     def from_data(cls, data: Json) -> Walk:
         """Of what ``data`` gives."""
         rows = [[math.nan if x is None else x for x in row] for row in data["joints_deg"]]
-        return cls(**{**data, "joints_deg": rows})
+        given: dict[str, Any] = {**data, "joints_deg": rows}
+        return cls(**given)
 
     def frames(self) -> Floats:
         """(n, 4, 4) mm: base_from_tcp."""
@@ -167,7 +168,8 @@ class _Walker:
         found.poses.append([*frame[:3, 3].tolist(), *vector.tolist()])
         found.external.append([float(one) for one in values])
         found.moves.append(number)
-        state, bodies, distance = FREE, [], 0.0
+        state, distance = FREE, 0.0
+        bodies: list[str] = []
         if there and tuple(values) == self.standing:
             scene = self.scenes.passes if move.kind == "LIN" else self.scenes.links
             state, bodies, distance = self._look(scene, q)

@@ -97,7 +97,11 @@ class JointChart(QtGui.QWidget):
         height = self._height()
         for k, row in enumerate(self.rows):
             value = row.values[self.place]
-            text = f"{figure(round(value, 1) + 0.0, '.1f')} {row.unit}" if math.isfinite(value) else "–"
+            text = (
+                f"{figure(round(value, 1) + 0.0, '.1f')} {row.unit}"
+                if math.isfinite(value)
+                else "–"
+            )
             painter.drawText(self._label(TOP + (k + 0.5) * height), text)
         painter.end()
 

@@ -32,6 +32,7 @@ from ..widgets.event_table import EventTable
 from ..widgets.fold import Fold, slim
 from ..widgets.form import WRONG, Form, number
 from ..widgets.pose_walk import PoseWalk
+from .panel import breakable
 from .robot_box import RobotForm
 from .run_panel import RunPanel
 
@@ -41,7 +42,7 @@ if TYPE_CHECKING:
 LANGUAGES = "KUKA KRL (*.src);;ABB RAPID (*.mod);;URScript (*.script);;Fanuc TP (*.ls);;Yaskawa INFORM (*.jbi)"
 JOINTS = 6
 EVENT_ROWS = 6
-SHOWN_NOTES = 3
+SHOWN_NOTES = 2
 
 
 class RobotProgramPanel(RunPanel):
@@ -111,7 +112,6 @@ class RobotProgramPanel(RunPanel):
     def _home(self) -> Widget:
         box = QtGui.QGroupBox(translate("BeltGrinding", "Home"))
         rows = QtGui.QVBoxLayout(box)
-        row = QtGui.QHBoxLayout()
         given = self._program().get("home_joints_deg", [])
         self.home = QtGui.QLineEdit(", ".join(f"{one:g}" for one in given))
         self.home.setObjectName("homeJoints")
@@ -122,7 +122,7 @@ class RobotProgramPanel(RunPanel):
             )
         )
         self.home.textChanged.connect(lambda _: self._set_home())
-        row.addWidget(self.home, 1)
+        rows.addWidget(self.home)
         text = translate("BeltGrinding", "Take from view")
         take = self._button("takeHome", text, self.take_home)
         take.setToolTip(
@@ -130,8 +130,7 @@ class RobotProgramPanel(RunPanel):
                 "BeltGrinding", "The joints of the arm as the 3D view shows it at the pose below"
             )
         )
-        row.addWidget(take)
-        rows.addLayout(row)
+        rows.addWidget(take)
         self.axes = QtGui.QLabel(self._axes_text())
         self.axes.setObjectName("externalAxes")
         self.axes.setWordWrap(True)
@@ -155,14 +154,14 @@ class RobotProgramPanel(RunPanel):
         return "\n".join(lines) or translate("BeltGrinding", "No external axes.")
 
     def _writing(self) -> Layout:
-        row = QtGui.QHBoxLayout()
+        row = QtGui.QVBoxLayout()
         self.unsafe = QtGui.QCheckBox(translate("BeltGrinding", "In spite of its problems"))
         self.unsafe.setObjectName("unsafe")
         self.unsafe.setToolTip(
             translate("BeltGrinding", "The program names them in its head. Do not run it as it is.")
         )
         self.save = self._button("writeRobot", translate("BeltGrinding", "Write..."), self.write)
-        row.addWidget(self.unsafe, 1)
+        row.addWidget(self.unsafe)
         row.addWidget(self.save)
         return row
 
@@ -346,8 +345,8 @@ class RobotProgramPanel(RunPanel):
         if obj.Refused:
             text = translate("BeltGrinding", "Not to be run, {} problems:")
             lines.append(text.format(len(obj.Refused)))
-        for name in ("Refused", "Notes"):
-            lines += stored_facts.sentences(obj, name, code, SHOWN_NOTES)
+        told = "Refused" if obj.Refused else "Notes"
+        lines += stored_facts.sentences(obj, told, code, SHOWN_NOTES)
         return "\n".join(lines)
 
     def write(self) -> None:
@@ -365,6 +364,9 @@ class RobotProgramPanel(RunPanel):
             return
         written = translate("BeltGrinding", "Written: {}").format(file)
         self._say("\n".join([written, *map(error_text, notes)]))
+
+    def _say(self, text: str, error: bool = False) -> None:
+        super()._say(breakable(text), error)
 
     def _open(self) -> None:
         if not self.ended and not self.document.HasPendingTransaction:

@@ -54,7 +54,7 @@ def test_what_is_near_is_an_event_with_its_distance(planned):
     try:
         met = [one for one in walks.events(whole, found, 60.0) if one["severity"] == "error"]
         assert len(met) == 1 and found.moves[met[0]["pose"]] == 3
-        assert met[0]["bodies"] == ["post", "wheel"]
+        assert met[0]["bodies"] == ["post", "wheel"] and met[0]["line"] == whole.moves[3].line
     finally:
         whole.problems.pop()
         whole.incidents.pop()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -222,18 +223,22 @@ def events(whole: Whole, found: Walk, clearance: float) -> list[dict[str, Any]]:
     """Events, as events.json has them, of a program's incidents and of where bodies are near, by time. ``pose``: the place
     of the walk, from 0."""
     known_kinds = kinds.kinds()
-    listed = [_of_incident(one, found, known_kinds) for one in whole.incidents]
+    lines = [move.line for move in whole.moves]
+    listed = [_of_incident(one, found, lines, known_kinds) for one in whole.incidents]
     told = {frozenset(one.bodies) for one in whole.incidents if one.bodies}
     begin = 0
     for k in range(1, len(found.states) + 1):
         if k == len(found.states) or found.bodies[k] != found.bodies[begin]:
             if found.states[begin] != FREE and frozenset(found.bodies[begin]) not in told:
-                listed.append(_of_places(found, begin, k, clearance, known_kinds))
+                event = _of_places(found, begin, k, clearance, known_kinds)
+                listed.append({**event, "line": lines[found.moves[event["pose"]]]})
             begin = k
     return sorted(listed, key=lambda one: (one["time"], one["pose"]))
 
 
-def _of_incident(one: Incident, found: Walk, known_kinds: Json) -> dict[str, Any]:
+def _of_incident(
+    one: Incident, found: Walk, lines: Sequence[int], known_kinds: Json
+) -> dict[str, Any]:
     place = found.at_move(one.move)
     for k in range(place, -1, -1):  # where the bodies are in each other, if a place shows it
         if found.moves[k] != found.moves[place]:
@@ -242,7 +247,12 @@ def _of_incident(one: Incident, found: Walk, known_kinds: Json) -> dict[str, Any
             place = k
             break
     event = kinds.momentary(
-        known_kinds[one.kind], one.kind, [one.fact], time=found.times[place], pose=place, line=0
+        known_kinds[one.kind],
+        one.kind,
+        [one.fact],
+        time=found.times[place],
+        pose=place,
+        line=lines[min(one.move, len(lines) - 1)],
     )
     return {**event, "program": 0, "severity": one.severity, "bodies": [*one.bodies]}
 

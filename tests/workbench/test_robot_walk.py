@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from test_robot_program import POST, cell, laid  # noqa: F401
+from test_robot_program import POST, cell
 
 from beltgrinding.presets import robot as robots
 from beltgrinding.robot_program import walk as walks, write as writing
@@ -12,9 +12,9 @@ from beltgrinding.robot_program.moves import Whole
 
 
 @pytest.fixture(scope="module")
-def planned(laid):  # noqa: F811
+def planned():
     """A job whose clearance is wide, and its program."""
-    job = cell(laid=laid, bodies=[POST])
+    job = cell(bodies=[POST])
     job["cell"]["clearance_mm"] = 60.0
     return job, writing.plan_job(job)
 

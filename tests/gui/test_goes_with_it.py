@@ -16,7 +16,8 @@ pytestmark = pytest.mark.freecad(window=True)
 
 
 @pytest.mark.parametrize(
-    "command", ["Simulate", "Plan feeds...", "Study...", "Contact at a pose...", "Cell"]
+    "command",
+    ["Simulate", "Plan feeds...", "Study...", "Contact at a pose...", "Cell", "Robot program..."],
 )
 def test_a_panel_goes_with_its_document(command):
     job = prepare()
@@ -58,7 +59,10 @@ def test_a_job_whose_part_is_deleted_says_so_in_one_line():
     assert job.DesignFaces and doc.getObject("Block")
 
 
-@pytest.mark.parametrize("command,name", [("Plan feeds...", "Plan"), ("Study...", "Study")])
+@pytest.mark.parametrize(
+    "command,name",
+    [("Plan feeds...", "Plan"), ("Study...", "Study"), ("Robot program...", "RobotProgram")],
+)
 def test_a_panel_that_is_closed_at_once_leaves_nothing(command, name):
     job = prepare()
     doc = job.Document
@@ -72,6 +76,8 @@ def test_a_panel_that_is_closed_at_once_leaves_nothing(command, name):
     menu(command)
     if name == "Plan":
         type_in("FeedMax", "77 mm/s")
+    elif name == "RobotProgram":
+        type_in("homeJoints", "0, -90, 90, 0, 60, 0")
     else:
         press("Add")
     press("Close")

@@ -175,6 +175,7 @@ def panels():
         "CheckSettings",
         "Scan",
         "BeltPlan",
+        "RobotProgram",
     ):
         Gui.runCommand("BeltGrinding_" + command)
         look(command)

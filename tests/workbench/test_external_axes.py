@@ -164,6 +164,22 @@ def test_languages_without_external_axes_are_refused(laid, tmp_path):
         writing.write(tmp_path / "w.script", job, whole)
 
 
+def test_what_is_beyond_a_limit_is_not_reached(laid):
+    search = placing.Search(typed(cell(KUKA, laid=laid)))
+    inside = 0.5 * (search.arm.lower + search.arm.upper) + math.radians(20.0)
+    beyond = np.where(np.arange(6) == 4, search.arm.upper + 0.1, inside)
+    place = search._judged((), np.stack([inside, beyond, np.full(6, np.nan)]), 0)
+    assert place.reached == pytest.approx(1 / 3) and place.margin_deg > 0.0
+    (doubt,) = placing.doubts(place, [])
+    assert "33.3 %" in str(doubt)
+    assert placing.doubts(place._replace(reached=1.0), []) == []
+    # Rapid ways are links in a program for the whole robot.
+    met = {"kind": "collision", "facts": [{"code": "event.collision_rapid"}]}
+    assert not search._is_hard(met) and search._is_hard({**met, "facts": []})
+    alone = typed(cell({**KUKA, "program": {}}, laid=laid, home_joints_deg=[]))
+    assert placing.Search(alone)._is_hard(met)
+
+
 @pytest.mark.slow
 def test_a_robot_out_of_reach_is_placed(laid, tmp_path):
     far = {**KUKA, "base_from_robot": {"position_mm": [-2500, 30, -350]}, "program": {"home_joints_deg": HOME}}  # fmt: skip

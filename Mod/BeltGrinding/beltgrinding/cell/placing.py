@@ -23,12 +23,13 @@ from ..job.typed import typed
 from ..job.workpiece import read_design
 from ..presets import robot as robots
 from . import collision, reach, tool_path
+from .event_lines import RAPID
 
 POSES = 120  # of each program, that the search looks at
 CHECKED = 8  # of the best places, with every pose and all bodies
 BEST, HALVINGS = 4, 5  # of the grid's places that are moved, and how often their steps are halved
 GRID = 500  # places of a grid over external axes, about
-NEAREST, FARTHEST, HEIGHT = 0.35, 1.1, 0.6  # of the arm's length, from the middle of the work
+NEAREST, FARTHEST, HEIGHT = 0.15, 1.1, 0.6  # of the arm's length, from the middle of the work
 HARD = ("out_of_reach", "joint_limit", "wrist_flip", "arm_flip", "collision")  # what may not be
 
 
@@ -46,7 +47,7 @@ class Place(NamedTuple):
     """``values``: of what is free; ``margin_deg``: the least distance from limits and singularities."""
 
     values: tuple[float, ...]
-    reached: float  # share of the poses
+    reached: float  # share of the poses, within the limits of the joints
     hard: int  # events that may not be
     margin_deg: float
 
@@ -85,7 +86,7 @@ class Search:
             return
         length = self.arm.length
         self.free = [
-            Free("distance_mm", NEAREST * length, FARTHEST * length, 5),
+            Free("distance_mm", NEAREST * length, FARTHEST * length, 6),
             Free("azimuth_deg", -180.0, 180.0, 16, True),
             Free("height_mm", -HEIGHT * length, HEIGHT * length, 5),
             Free("yaw_deg", -180.0, 180.0, 1, True),
@@ -120,13 +121,12 @@ class Search:
         return place
 
     def _judged(self, values: tuple[float, ...], joints: Floats, hard: int) -> Place:
-        there = np.isfinite(joints).all(axis=1)
+        room = np.minimum(joints - self.arm.lower, self.arm.upper - joints).min(axis=1)
+        there = room >= 0.0  # what is beyond a limit is not reached; NaN is out of reach
         margin = -math.inf
         if there.any():
-            q = joints[there]
-            limits = np.minimum(q - self.arm.lower, self.arm.upper - q).min()
-            singular = min(self.arm.singular_distance(one) for one in q)
-            margin = math.degrees(min(float(limits), singular))
+            singular = min(self.arm.singular_distance(one) for one in joints[there])
+            margin = math.degrees(min(float(room[there].min()), singular))
         return Place(values, float(there.mean()), hard, margin)
 
     def run(self) -> tuple[Place, list[Json]]:
@@ -174,13 +174,19 @@ class Search:
         for place in _apart(listed, self.free)[:CHECKED]:
             found = self._events(place, shape)
             joints = np.radians(np.concatenate([one["joints"] for one in found]))
-            events = [event for one in found for event in one["events"] if event["kind"] in HARD]
+            events = [event for one in found for event in one["events"] if self._is_hard(event)]
             whole = self._judged(place.values, joints, len(events))
             if best is None or whole.worth > best[0].worth:
                 best = whole, events
             if not events and whole.reached == 1.0:
                 break
         return known(best)
+
+    def _is_hard(self, event: Json) -> bool:
+        """Whether it may not be. A program for the whole robot has links in place of the rapid ways."""
+        links = bool(self.job.robot.program.home_joints_deg)
+        rapid = any(fact["code"].endswith(RAPID) for fact in event["facts"])
+        return event["kind"] in HARD and not (links and rapid)
 
     def _events(self, place: Place, shape: core.Shape | None) -> list[dict[str, Any]]:
         job = typed({**records.plain(self.job), "robot": {**self.robot, **self.made(place.values)}})
@@ -190,6 +196,21 @@ class Search:
             for one, of_path in zip(found, met):
                 one["events"] = [*one["events"], *of_path["events"]]
         return found
+
+
+def doubts(place: Place, events: Sequence[Json]) -> list[core.Fact]:
+    """That no place was found where all is well, if so."""
+    if place.reached == 1.0 and not events:
+        return []
+    return [
+        core.Fact(
+            "cell.no_place",
+            "no place is found where the robot does all of the programs: at the best one it reaches {reached:.1f} % of the "
+            "poses within its limits, and {count} events are left",
+            reached=100.0 * place.reached,
+            count=len(events),
+        )
+    ]
 
 
 def told(search: Search, place: Place, events: Sequence[Json]) -> dict[str, Any]:

@@ -376,6 +376,7 @@ def _place(arguments, job):
             write_whole(Path(arguments.output), placing.map_csv(made).encode())
         except OSError as error:
             raise cannot_be_written(arguments.output, error) from None
+    arguments.messages.print_warnings(placing.doubts(place, events))
     print(json.dumps(placing.told(made, place, events), indent=2, allow_nan=False))
 
 

@@ -17,6 +17,8 @@ DOCUMENT_FUNCTIONS = (
     "make_plan",
     "apply_plan",
     "write_plan",
+    "make_robot_program",
+    "write_robot_program",
     "make_study",
     "open_study_run",
     "make_deviation",

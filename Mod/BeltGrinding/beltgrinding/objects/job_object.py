@@ -75,8 +75,8 @@ class BeltGrindingJob(Proxy):
             elif simulation is not None:
                 verdict.OutOfDate = simulation.OutOfDate
         for member in obj.Group:
-            # A Plan or a Study, whose modules know this one.
-            if {"NewFeeds", "RunsInAll"} & set(member.PropertiesList):
+            # A Plan, a Study or a RobotProgram, whose modules know this one.
+            if {"NewFeeds", "RunsInAll", "RobotMoves"} & set(member.PropertiesList):
                 member.Proxy.update(member)
         check_limits(obj, KEYS)
         if obj.ToleranceLower > obj.ToleranceUpper:

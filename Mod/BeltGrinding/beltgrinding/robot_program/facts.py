@@ -95,3 +95,15 @@ def slower(**named: object) -> Fact:
         "{program}: at {count} motions the joints' speeds or accelerations lower the feed",
         **named,
     )
+
+
+def meet_there(**named: object) -> Fact:
+    return Fact("robot_program.meet_there", "{body} and {other} are in each other", **named)
+
+
+def near_there(**named: object) -> Fact:
+    return Fact(
+        "robot_program.near_there",
+        "{body} and {other} are {distance:.1f} mm from each other",
+        **named,
+    )

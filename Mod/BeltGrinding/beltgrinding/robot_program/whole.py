@@ -92,7 +92,7 @@ class Planner:
         self.seconds = np.diff(self.path.times(), prepend=0.0)
         self.at = self.home
         self.numbers = {"passes": 0, "cuts": 0, "slower": 0, "links": 0, "links_round": 0}
-        self.least_clearance = math.inf
+        self.least_clearance, self.first_slower = math.inf, 0
         self.told: set[tuple[Any, ...] | None] = set()  # of what has been said to meet
 
     def run(self) -> Whole:
@@ -123,11 +123,11 @@ class Planner:
             self._at_home(stage.end, f"{name} to its place")
             for body, other in known(sweep).meetings(stage):
                 begin, end = stage.begin[stage.number], stage.end[stage.number]
-                self.whole.problems.append(
-                    facts.external_meets(
-                        program=self.name, body=body, other=other, axis=name, begin=begin, end=end
-                    )
+                fact = facts.external_meets(
+                    program=self.name, body=body, other=other, axis=name, begin=begin, end=end
                 )
+                last = len(self.whole.moves) - 1
+                self.whole.add_problem("collision", fact, (body, other), last)
 
     def _go_back(self) -> None:
         for stage in reversed(external.stages(self.axes)):
@@ -275,9 +275,8 @@ class Planner:
         found = self.linker.find(self.at, to)
         if found is None:
             body, other = self.linker.in_the_way(self.at, to)
-            self.whole.problems.append(
-                facts.no_link(program=self.name, place=note, body=body, other=other)
-            )
+            fact = facts.no_link(program=self.name, place=note, body=body, other=other)
+            self.whole.add_problem("collision", fact, (body, other))
             found = [{"joints": np.stack([self.at, to]), "straight": True, "clearance": 0.0}]
         self.numbers["links"] += 1
         self.numbers["links_round"] += any(not one["straight"] for one in found)
@@ -309,9 +308,8 @@ class Planner:
         if met is not None and known_of not in self.told:  # once a pass
             self.told.add(known_of)
             place = self._place(move.line)
-            self.whole.problems.append(
-                facts.meets(program=self.name, body=met[0], other=met[1], place=place)
-            )
+            fact = facts.meets(program=self.name, body=met[0], other=met[1], place=place)
+            self.whole.add_problem("collision", fact, met[:2])
 
     def _keep_pace(self, move: Move, way: Floats) -> None:
         """Lowers a motion's feed so far that no joint is too fast anywhere on its ``way``, whose parts are equally long:
@@ -330,7 +328,12 @@ class Planner:
             most = self._fastest(finer, seconds)
         if most > 1.0 + SLOWER:
             move.feed = length / (seconds * most)
-            self.numbers["slower"] += 1
+            self._count_slower()
+
+    def _count_slower(self) -> None:
+        if not self.numbers["slower"]:
+            self.first_slower = len(self.whole.moves)
+        self.numbers["slower"] += 1
 
     def _fastest(self, way: Floats, seconds: float) -> float:
         """The greatest speed of a joint on a way of equally long parts, times its limit."""
@@ -345,9 +348,9 @@ class Planner:
             met = None if way is None else self._met(self.scenes.passes, way)
             if met is not None:
                 place = f"line {move.line}" if move.line else "a pose"
-                self.whole.problems.append(
-                    facts.corner_meets(program=self.name, body=met[0], other=met[1], place=place)
-                )
+                fact = facts.corner_meets(program=self.name, body=met[0], other=met[1], place=place)
+                number = next(k for k, one in enumerate(self.whole.moves) if one is move)
+                self.whole.add_problem("collision", fact, met[:2], number)
                 return
 
     @staticmethod
@@ -370,32 +373,36 @@ class Planner:
         feed, before = float(self.given["feeds"][row]), float(self.seconds[pose["pose"]])
         if not pose["link"] and 0.0 < before * (1.0 + SLOWER) < pose["duration"]:
             feed *= before / pose["duration"]
-            self.numbers["slower"] += 1
+            self._count_slower()
         joints = np.degrees(pose["q"]) if pose["reached"] else None
         force, zone = float(self.given["forces"][row]), float(self.given["zones"][row])
         return Move("LIN", pose["frame"], joints, feed, force, zone, self._line(pose))
 
     def _tell_cut(self, pose: Json) -> None:
         number, place = self.numbers["passes"], self._place(self._line(pose))
-        self.whole.notes.append(facts.cut(program=self.name, number=number, place=place))
+        self.whole.add_note("arm_flip", facts.cut(program=self.name, number=number, place=place))
         if pose["torn"]:
             self._tell_broken(self._motion(pose))
 
     def _tell_broken(self, move: Move) -> None:
         place = self._place(move.line)
-        self.whole.problems.append(facts.broken(program=self.name, place=place))
+        self.whole.add_problem("arm_flip", facts.broken(program=self.name, place=place))
 
     def _tell_poses(self, poses: list[dict[str, Any]]) -> None:
-        for fact, within in ((facts.out_of_reach, True), (facts.beyond_limits, False)):
+        for fact, kind, within in (
+            (facts.out_of_reach, "out_of_reach", True),
+            (facts.beyond_limits, "joint_limit", False),
+        ):
             lost = [one for one in poses if not one["reached"] and one["within_limits"] == within]
             if lost:
                 place = self._place(self._line(lost[0]))
-                self.whole.problems.append(fact(program=self.name, count=len(lost), place=place))
+                self.whole.add_problem(kind, fact(program=self.name, count=len(lost), place=place))
 
     def _tell(self, found: Json) -> None:
         if self.numbers["slower"]:
             count = self.numbers["slower"]
-            self.whole.notes.append(facts.slower(program=self.name, count=count))
+            fact = facts.slower(program=self.name, count=count)
+            self.whole.add_note("joint_speed", fact, self.first_slower)
         joints = np.stack([m.joints_deg for m in self.whole.moves if m.joints_deg is not None])
         lower, upper = np.degrees(self.arm.lower), np.degrees(self.arm.upper)
         self.whole.figures = {

@@ -44,9 +44,7 @@ def plan_job(job: Job | Json, context: Context = None) -> Whole:
     for index in range(count):
         part = context.part(index / count, (index + 1) / count)
         one = wholes.plan(job, index, None, part)
-        joined.moves += one.moves if index == 0 else one.moves[1:]
-        joined.problems += one.problems
-        joined.notes += one.notes
+        joined.follow(one)
         joined.figures = _summed(joined.figures, one.figures)
     return joined
 

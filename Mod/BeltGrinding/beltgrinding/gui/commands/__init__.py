@@ -79,6 +79,12 @@ MENU = (  # a row a command, by step, in the order of work
             paths.export_program,
             paths.can_export,
         ),
+        Command(
+            "RobotProgram",
+            "Robot program...",
+            "Plans the program of the whole robot, from home by all passes and back, and writes it",
+            paths.plan_robot,
+        ),
     ),
     (
         Command("Simulate", "Simulate", "Grinds the job; FreeCAD stays usable", results.simulate),

@@ -6,7 +6,7 @@ import FreeCAD
 import FreeCADGui as Gui
 
 from ...engine import InputError
-from ...objects import api, freecad_path, robot_path
+from ...objects import api, freecad_path, robot_path, robot_program
 from ...objects.kinds import DocumentObject
 from ...objects.proxy import type_of
 from ..common.compat import QtGui, translate
@@ -15,7 +15,7 @@ from ..common.messages import error_text, inform
 from ..common.save_dialog import file_to_write
 from ..common.transaction import transaction
 from ..panels.panel import edit
-from .base import active_job, make
+from .base import active_job, make, make_once
 
 
 def choose_program() -> None:
@@ -65,6 +65,17 @@ def read_again() -> None:
             if type_of(path) == robot_path.RobotPath.TYPE and path.Source:
                 robot_path.load_program(path, path.Source)
         job.Document.recompute()
+
+
+def plan_robot() -> None:
+    from ..panels.robot_program_panel import show
+
+    make_once(
+        robot_program.RobotProgram,
+        translate("BeltGrinding", "Robot program"),
+        lambda job: api.make_robot_program(job, compute=False),
+        show,
+    )
 
 
 def _to_export() -> list[DocumentObject]:

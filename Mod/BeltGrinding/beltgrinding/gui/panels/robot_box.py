@@ -26,20 +26,15 @@ SHOWN_EVENTS = 200
 LIST_HEIGHT = 90  # pixels
 
 
-class RobotBox(QtGui.QGroupBox):
-    """Edits the robot of a BeltMachine. ``changed()`` follows every edit; ``found(result)`` a check
-    of the path that ``path()`` gives; ``go(pose)`` asks for a pose, from 0."""
+class RobotForm(QtGui.QGroupBox):
+    """Edits the robot of a BeltMachine: which one, its controller, where it stands, its tool. ``changed()`` follows every
+    edit."""
 
-    def __init__(self, machine: DocumentObject, path: Callable[[], DocumentObject]) -> None:
+    def __init__(self, machine: DocumentObject) -> None:
         super().__init__(translate("BeltGrinding", "Robot"))
-        self.machine, self.path = machine, path
+        self.machine = machine
         self.changed: Callable[[], object] = lambda: None
-        self.found: Callable[[Any], object] = lambda result: None
-        self.go: Callable[[int], object] = lambda pose: None
-        self.task: Background | None = None
-        self.events: list[Event] = []  # of the path that was checked
-        self.unchecked = ""  # why what the arm may meet was not looked at
-        layout = QtGui.QFormLayout(self)
+        layout = self.rows = QtGui.QFormLayout(self)
         layout.setRowWrapPolicy(QtGui.QFormLayout.WrapAllRows)
         self.choice = steady(QtGui.QComboBox())
         self.choice.setObjectName("robot")
@@ -85,19 +80,6 @@ class RobotBox(QtGui.QGroupBox):
             label = QtGui.QLabel(text)
             layout.addRow(label, field)
             self.fields += [label, field]
-        self.joints = QtGui.QLabel()
-        self.joints.setObjectName("joints")
-        self.joints.setWordWrap(True)
-        self.check = QtGui.QPushButton(translate("BeltGrinding", "Check the whole program"))
-        self.check.setObjectName("checkReach")
-        self.check.clicked.connect(self.start)
-        self.list = QtGui.QListWidget()
-        self.list.setObjectName("reachEvents")
-        self.list.setMaximumHeight(LIST_HEIGHT)
-        self.list.currentRowChanged.connect(self._chosen)
-        for widget in (self.joints, self.check, self.list):
-            layout.addRow(widget)
-            self.fields.append(widget)
         self.choice.currentIndexChanged.connect(self._choose)
         self._arrange()
 
@@ -115,7 +97,41 @@ class RobotBox(QtGui.QGroupBox):
         some = bool(self.ids[self.choice.currentIndex()])
         for widget in self.fields:
             widget.setVisible(some)
-        self.list.setVisible(some and bool(self.events))
+
+    def forget(self) -> None:
+        """What was found no longer holds."""
+
+
+class RobotBox(RobotForm):
+    """The same, and what its arm meets on a path. ``found(result)`` follows a check of the path that ``path()`` gives;
+    ``go(pose)`` asks for a pose, from 0."""
+
+    def __init__(self, machine: DocumentObject, path: Callable[[], DocumentObject]) -> None:
+        self.events: list[Event] = []  # of the path that was checked
+        self.task: Background | None = None
+        self.list = QtGui.QListWidget()
+        super().__init__(machine)
+        self.path = path
+        self.found: Callable[[Any], object] = lambda result: None
+        self.go: Callable[[int], object] = lambda pose: None
+        self.unchecked = ""  # why what the arm may meet was not looked at
+        self.joints = QtGui.QLabel()
+        self.joints.setObjectName("joints")
+        self.joints.setWordWrap(True)
+        self.check = QtGui.QPushButton(translate("BeltGrinding", "Check the whole program"))
+        self.check.setObjectName("checkReach")
+        self.check.clicked.connect(self.start)
+        self.list.setObjectName("reachEvents")
+        self.list.setMaximumHeight(LIST_HEIGHT)
+        self.list.currentRowChanged.connect(self._chosen)
+        for widget in (self.joints, self.check, self.list):
+            self.rows.addRow(widget)
+            self.fields.append(widget)
+        self._arrange()
+
+    def _arrange(self) -> None:
+        super()._arrange()
+        self.list.setVisible(self.choice.currentIndex() > 0 and bool(self.events))
 
     def forget(self) -> None:
         """What was found no longer holds."""

@@ -39,7 +39,8 @@ PLACES = {
     "wheel": "contact",
     "base": STANDING,
 }  # where a body goes, if it is not called as in a job
-ALARM, TINT, FADE = (0.86, 0.12, 0.10), "BeltGrindingTint", "BeltGrindingFade"
+ALARM, CLOSE = (0.86, 0.12, 0.10), (0.93, 0.62, 0.05)  # of what meets, of what is near
+TINT, FADE = "BeltGrindingTint", "BeltGrindingFade"
 CELL: dict[str, Any] = {
     "holding": "tool_in_hand",
     **dict.fromkeys(
@@ -65,6 +66,7 @@ class CellView:
             self.root.addChild(separator(*nodes, things))
         self.bodies: dict[str, Node] = {}  # by their names
         self.tinted: tuple[str, ...] = ()  # names of bodies
+        self.tone = ALARM
         self.belt: dict[str, Any] | None = None  # of a machine without a wheel, as a job has it
         self.part: Surface | None = None
         self.pressed = False  # the belt is drawn as the part presses it
@@ -121,7 +123,7 @@ class CellView:
                 self.things[PLACES.get(frame, frame)].addChild(self.bodies[name])
             self.robot.choose(self.machine.Proxy.robot(self.machine))
             self.bodies.update(self.robot.bodies)
-            self.tint(self.tinted)
+            self.tint(self.tinted, self.tone)
         self.things["tool"].addChild(axes(0.3 * size))
         self.update()
 
@@ -143,14 +145,14 @@ class CellView:
             self.bodies[""], self.belt, points, triangles, self.pressed
         )
 
-    def tint(self, names: Collection[str]) -> None:
+    def tint(self, names: Collection[str], tone: tuple[float, float, float] = ALARM) -> None:
         """Draws the bodies of these names, as events have them, in a warning colour; the others in
         their own."""
-        self.tinted = tuple(names)
+        self.tinted, self.tone = tuple(names), tone
         for name, node in self.bodies.items():
             colour = None
             if name in self.tinted:
-                colour = material(ALARM, 0.4)
+                colour = material(tone, 0.4)
                 colour.setOverride(True)
             _put_first(node, TINT, colour)
 
@@ -189,6 +191,7 @@ class CellView:
         """Puts everything where it is at the pose."""
         if not len(self.poses):
             return
+        self.robot.stand(self.pose)
         frames = self.frames()
         for name, node in self.places.items():
             set_matrix(node, frames[name])

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pivy import coin
 
 from ...engine import InputError
-from ...presets import robot as robots, urdf_shapes
+from ...presets import external_axes, robot as robots, urdf_shapes
 from ...geometry.body_names import LINKS
 from ..common.kinds import Array, Json, Node, Surface
 from .shapes3d import material, separator, set_matrix, triangles
@@ -35,10 +35,11 @@ class RobotView:
         self.shapes: list[tuple[str, Array, Array]] = []  # of the links: name, points, triangles
         self.at: list[Array] = []  # frames of the links at the pose
         self.followed: Array | None = None  # (n, 6) degrees, of a path that was followed as a whole
+        self.external: Array | None = None  # (n, axes) where external axes move along the path
 
     def choose(self, robot: Json) -> None:
         """A job's robot, with its defaults; its errors are the panel's."""
-        self.joints = self.followed = None
+        self.joints = self.followed = self.external = None
         self.standing = np.eye(4)
         self.root.removeAllChildren()
         self.places, self.bodies, self.shapes = [], {}, []
@@ -51,8 +52,27 @@ class RobotView:
         if self.arm is not None:
             self._build(robots.links_of(robot, urdf_shapes.VISUAL))
             self.base_from_robot = robots.robot_frame(robot, "base_from_robot")
+            self.axes, self.at_zero = robot["external_axes"], robots.frame_at_zero(robot)
             self.flange_from_tcp = robots.robot_frame(robot, "flange_from_tcp")
             self.near = np.clip(np.zeros(6), self.arm.lower, self.arm.upper)
+
+    def follow(self, joints_deg: Array | None, external: Array | None) -> None:
+        """Goes by the joints of a path, and the places of the external axes, as ``followed`` and ``external`` have them;
+        without them by the nearest solution, and the axes stand."""
+        self.followed, self.external = joints_deg, external
+        if self.arm is not None and external is None:
+            self._move_axes(external_axes.at(self.axes, "position"))
+
+    def stand(self, index: int) -> None:
+        """Moves the external axes to where they are at a pose, if the path moves them."""
+        if self.arm is None or self.external is None or index >= len(self.external):
+            return
+        self._move_axes(self.external[index].tolist())
+
+    def _move_axes(self, values: Sequence[float]) -> None:
+        self.base_from_robot = external_axes.base_from_robot(self.axes, values, self.at_zero)
+        part = external_axes.displacement(self.axes, values, external_axes.PART)
+        self.standing = np.linalg.inv(part)
 
     def place(self, work_from_base: Array, base_from_tcp: Array, index: int) -> None:
         """Puts the arm where it holds the tool frame at the pose number ``index`` (from 0)."""

@@ -37,6 +37,7 @@ __all__ = [
     "PlanView",
     "RasterPathView",
     "RobotPathView",
+    "RobotProgramView",
     "SectionView",
     "SimulationView",
     "StockView",
@@ -324,3 +325,22 @@ class StudyView(Undrawn):
 
     def verb(self) -> str:
         return translate("BeltGrinding", "Show study")
+
+
+class RobotProgramView(Undrawn):
+    """The icon says when the program is out of date; a double click opens its panel."""
+
+    ICON = "BeltGrinding_RobotProgram"
+    COMMANDS = ("BeltGrinding_Cell",)
+
+    def doubleClicked(self, view: ViewObject) -> bool:
+        from ..panels.robot_program_panel import show
+
+        show(view.Object)
+        return True
+
+    def setEdit(self, view: ViewObject, mode: int = 0) -> bool | None:
+        return None
+
+    def verb(self) -> str:
+        return translate("BeltGrinding", "Show robot program")

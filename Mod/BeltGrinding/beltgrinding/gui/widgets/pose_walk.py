@@ -73,8 +73,8 @@ class PoseWalk(QtGui.QWidget):
 
     def choose(self, index: int) -> None:
         """Walks another program, from its first pose."""
-        self.view.robot.followed = None
         arrays = self.paths[index].Proxy.arrays(self.paths[index])
+        self.view.robot.follow(arrays.get("joints_deg"), arrays.get("external"))
         self.view.set_path(arrays["frames"])
         count = len(arrays["frames"])
         for widget in (self.slider, self.number):

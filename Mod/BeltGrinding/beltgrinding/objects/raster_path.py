@@ -57,6 +57,7 @@ KEYS = (
     Key("Entry", "Enumeration", "Process", "raster.entry"),
     Key("Lead", "Length", "Process", "raster.lead_mm"),
     Key("Ramp", "Length", "Process", "raster.ramp_mm"),
+    Key("BorderForceShare", "Float", "Process", "raster.border_force_share"),
     Key("TouchForceShare", "Float", "Process", "raster.touch_force_share"),
     Key("EntryFeed", "Speed", "Process", "raster.entry_feed_mm_s"),
     Key("Approach", "Enumeration", "Process", "raster.approach"),

@@ -229,6 +229,28 @@ def test_at_borders_the_force_is_less_and_the_feed_with_it():
         assert (a["feeds"] == b["feeds"]).all() and (a["frames"] == b["frames"]).all()
 
 
+def test_edges_that_are_kept_are_not_ground():
+    """Neither the outer border nor that of the hole; the seams between the mesh's faces are none."""
+    keep, stock = 4.0, 0.3
+    job = job_of(holed(8.0))
+    wanted = {**X, "step_over_mm": 4.0, "keep_edge_mm": keep}
+    laid = raster_path.raster(job, wanted)
+    length, width = plane_extents(job, engine_input.of(job), raster_path.validate(wanted))
+    x, y = laid["contacts"][laid["contact"], :2, 3].T
+    assert min(x.min(), 100.0 - x.max()) == pytest.approx(keep + length / 2, abs=1.0)
+    assert min(y.min(), 60.0 - y.max()) >= keep + width / 2 - 1e-6
+    assert not (np.hypot((x - 50.0), (y - 30.0)) < 8.0 + keep).any()
+    ran = runs.run(jobs.validate({**job, "programs": [{"poses": poses.list_poses(laid)}]}))
+    points, height = np.asarray(ran.field.points), np.asarray(ran.field.height)
+    removed = np.asarray(ran.field.stock_height) - height
+    px, py = points[:, 0], points[:, 1]
+    off = np.minimum.reduce([px, 100.0 - px, py, 60.0 - py, np.hypot(px - 50.0, py - 30.0) - 9.0])
+    assert removed[off < keep - 1.0].max() < 0.02 * stock and removed[off > 12.0].mean() > 0.1
+    with pytest.raises(InputError) as refused:
+        raster_path.raster(job, {**wanted, "keep_edge_mm": 25.0})
+    assert refused.value.code == "raster.no_pass_beside_edges"
+
+
 def test_beside_a_wall_the_wheel_comes_down_on_the_face():
     # A floor of 60 x 40 with a wall at x = 60.
     points = [[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0], [60, 0, 30], [60, 40, 30]]

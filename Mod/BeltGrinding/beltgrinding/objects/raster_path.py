@@ -37,6 +37,7 @@ KEYS = (
     Key("Order", "Enumeration", "Passes", "raster.order"),
     Key("Repeats", "Integer", "Passes", "raster.repeats"),
     Key("RunOut", "Distance", "Passes", "raster.run_out_mm"),
+    Key("KeepEdge", "Length", "Passes", "raster.keep_edge_mm"),
     Key("Bridge", "Length", "Passes", "raster.bridge_mm"),
     Key("MinLength", "Length", "Passes", "raster.min_length_mm"),
     Key("BeltAngle", "Angle", "Posing", "raster.belt_angle_deg"),

@@ -64,7 +64,9 @@ class Entry:
         self.block = max(feed * self.limits.least_block_s, self.limits.least_block_mm)
         # A run-out of the user's own is a part of it.
         self.lead = max(self.lead - max(settings["run_out_mm"], 0.0), 0.0)
-        if settings["run_out_mm"] < 0.0:  # the border is to be spared
+        if (
+            settings["run_out_mm"] < 0.0 or settings["keep_edge_mm"] > 0.0
+        ):  # the border is to be spared
             self.lead = 0.0
         self._own = self._others = None
         if self.lead > 0.0:

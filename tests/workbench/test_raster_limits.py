@@ -204,6 +204,53 @@ def test_the_force_grows_over_the_border():
     assert short["feeds"][on][~ramp] == pytest.approx(50) and short["forces"].max() == 20
 
 
+def test_at_borders_the_force_is_less_and_the_feed_with_it():
+    job = job_of(holed(0.0))
+    share, spares = 0.2, {"border_force_share": 0.2, "force_N": 20.0}
+    half = plane_extents(job, engine_input.of(job), raster_path.validate({**X, **spares}))[0] / 2
+    laid = raster_path.raster(job, {**X, **spares})
+    for one in laid["passes"]:
+        on = slice(one["first"] + 1, one["last"] + 1)
+        x = laid["contacts"][one["first"] : one["last"] + 1, 0, 3]
+        middle = 0.5 * (x[1:] + x[:-1])
+        inside = np.minimum(middle, 100.0 - middle)  # mm from the border
+        forces, feeds = laid["forces"][on], laid["feeds"][on]
+        grown = np.clip(inside / half, 0.0, 1.0) ** 2
+        on_face = inside > 0.0
+        wanted = np.maximum(share, grown)[on_face]
+        assert forces[on_face] / 20.0 == pytest.approx(wanted, abs=1e-6)
+        assert feeds[on_face] / 50.0 == pytest.approx(wanted, abs=0.01)  # in tenths at most
+        assert (~on_face).any() and (forces[~on_face] < share * 20.0).all()
+    # Where no force is set, nothing of it is.
+    for plain in ({"entry": "direct"}, {}):
+        control = {"machine": {"control": "position"}} if not plain else {}
+        other = job_of(holed(0.0), **control)
+        a, b = (raster_path.raster(other, {**X, **plain, **more}) for more in ({}, spares))
+        assert (a["feeds"] == b["feeds"]).all() and (a["frames"] == b["frames"]).all()
+
+
+def test_edges_that_are_kept_are_not_ground():
+    """Neither the outer border nor that of the hole; the seams between the mesh's faces are none."""
+    keep, stock = 4.0, 0.3
+    job = job_of(holed(8.0))
+    wanted = {**X, "step_over_mm": 4.0, "keep_edge_mm": keep}
+    laid = raster_path.raster(job, wanted)
+    length, width = plane_extents(job, engine_input.of(job), raster_path.validate(wanted))
+    x, y = laid["contacts"][laid["contact"], :2, 3].T
+    assert min(x.min(), 100.0 - x.max()) == pytest.approx(keep + length / 2, abs=1.0)
+    assert min(y.min(), 60.0 - y.max()) >= keep + width / 2 - 1e-6
+    assert not (np.hypot((x - 50.0), (y - 30.0)) < 8.0 + keep).any()
+    ran = runs.run(jobs.validate({**job, "programs": [{"poses": poses.list_poses(laid)}]}))
+    points, height = np.asarray(ran.field.points), np.asarray(ran.field.height)
+    removed = np.asarray(ran.field.stock_height) - height
+    px, py = points[:, 0], points[:, 1]
+    off = np.minimum.reduce([px, 100.0 - px, py, 60.0 - py, np.hypot(px - 50.0, py - 30.0) - 9.0])
+    assert removed[off < keep - 1.0].max() < 0.02 * stock and removed[off > 12.0].mean() > 0.1
+    with pytest.raises(InputError) as refused:
+        raster_path.raster(job, {**wanted, "keep_edge_mm": 25.0})
+    assert refused.value.code == "raster.no_pass_beside_edges"
+
+
 def test_beside_a_wall_the_wheel_comes_down_on_the_face():
     # A floor of 60 x 40 with a wall at x = 60.
     points = [[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0], [60, 0, 30], [60, 40, 30]]

@@ -53,6 +53,8 @@ class Entry:
         self.tool = tool
         under_force = machine.control == "force"
         self.force = (settings["force_N"] or machine.force_N) if under_force else None
+        spares = under_force and settings["entry"] != "direct"
+        self.border = float(settings["border_force_share"]) if spares else 0.0
         self._half = 0.5 * length if settings["entry"] != "direct" else 0.0
         self.lead = 0.0
         if settings["entry"] == "run_on":
@@ -62,7 +64,9 @@ class Entry:
         self.block = max(feed * self.limits.least_block_s, self.limits.least_block_mm)
         # A run-out of the user's own is a part of it.
         self.lead = max(self.lead - max(settings["run_out_mm"], 0.0), 0.0)
-        if settings["run_out_mm"] < 0.0:  # the border is to be spared
+        if (
+            settings["run_out_mm"] < 0.0 or settings["keep_edge_mm"] > 0.0
+        ):  # the border is to be spared
             self.lead = 0.0
         self._own = self._others = None
         if self.lead > 0.0:
@@ -125,7 +129,7 @@ class Entry:
         """
         if self.settings["entry"] == "direct":
             return 0.0
-        grown = lead + (1.0 if lead > 0.0 else INSIDE) * self._half
+        grown = lead + (1.0 if lead > 0.0 or self.border else INSIDE) * self._half
         return self.settings["ramp_mm"] or max(grown, self.block)
 
     def ramps(self, leads: Sequence[float], length: float) -> Floats:
@@ -136,8 +140,20 @@ class Entry:
     def shares(self, places: Floats, leads: Sequence[float], length: float) -> Floats:
         """Of the full force, at ``places`` (n,) mm from where the wheel comes down, ``length`` mm before it
         lifts off; ``leads``: of both ends, mm."""
-        touch, (first, last) = self.settings["touch_force_share"], self.ramps(leads, length)
-        if first <= 0.0:
+        touch, ramps = self.settings["touch_force_share"], self.ramps(leads, length)
+        if ramps[0] <= 0.0:
             return np.ones(len(places))
-        near = np.minimum(places / first, (length - places) / last)
-        return touch + (1.0 - touch) * np.clip(near, 0.0, 1.0)
+        ends = zip((places, length - places), ramps, leads)
+        return np.minimum(*(self._grown(way, ramp, lead, touch) for way, ramp, lead in ends))
+
+    def _grown(self, way: Floats, ramp: float, lead: float, touch: float) -> Floats:
+        """Of the full force, ``way`` (n,) mm from one end of a pass."""
+        if not self.border:
+            return touch + (1.0 - touch) * np.clip(way / ramp, 0.0, 1.0)
+        outside = min(lead, ramp)
+        inside = np.clip((way - outside) / max(ramp - outside, STILL), 0.0, 1.0)
+        # A contact's length goes with the root of its force: it reaches to the border and no farther.
+        spared = np.maximum(self.border, inside**2)
+        least = min(touch, self.border)
+        before = least + (self.border - least) * np.clip(way / max(outside, STILL), 0.0, 1.0)
+        return np.where(way < outside, before, spared)

@@ -33,6 +33,7 @@ class Ramps(Protocol):
     force: Any  # N; None under position control
     lead: float
     block: float  # mm
+    border: float  # of the force, at borders; 0: it grows evenly from outside
     limits: Limits
 
     def leads(self, frames: Floats, outwards: Floats, most: Floats, clearing: Room) -> Floats:

@@ -442,6 +442,8 @@ def _stroke(piece: Piece, settings: Json, entry: Ramps) -> dict[str, Any]:
     feeds = np.full(len(contacts), float(settings["feed_mm_s"]))
     if settings["entry_feed_mm_s"] > 0.0:
         feeds[lead + 1 : lead + count][share < 1.0] = settings["entry_feed_mm_s"]
+    if entry.border:  # so that as much is removed
+        feeds[lead + 1 : lead + count] *= np.maximum(share, entry.border)
     feeds[: lead + 1] = feeds[lead + count :] = settings["approach_feed_mm_s"]
     rapid = np.zeros(len(contacts), dtype=bool)
     # Between the pass's height of clearance and the beginning of the approach nothing is ground.

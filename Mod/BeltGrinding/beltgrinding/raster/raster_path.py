@@ -21,7 +21,7 @@ from ..job.settings import Job
 from ..job.typed import typed
 from ..job.workpiece import read_design
 from ..programs.program import Motion, Program, corner_of
-from . import around, direction, filling, footprint, passes, path_check, reachable, region
+from . import around, direction, edges, filling, footprint, passes, path_check, reachable, region
 from .clearing import Clearing
 from .entry import Entry
 from .footprint import belt_extents, contact_width, plane_extents
@@ -208,6 +208,13 @@ def _laid(
     length = length or usual[0]
     assert length is not None
     clearing = Clearing(job, shape, settings, warnings, context, advance)
+    kept = None
+    if settings["keep_edge_mm"] > 0.0:
+        sizes = [(length, seen["width_mm"]), usual]
+        sizes += [] if belt else [plane_extents(job, given, settings)]
+        kept = edges.Kept(shape, faces, spacing, sizes, settings, clearing)
+        levels = kept.spared(levels)
+        kept.refuse(levels)
     entry = Entry(job, shape, faces, settings, context, length, clearing.tool)
     cleared = clearing.cleared(levels)
     result = passes.assemble(cleared, settings, cell, entry, clearing)
@@ -235,7 +242,8 @@ def _laid(
 
         def levels_of(step_over: float) -> Levels:
             found = _lines(sheets, settings, step_over, spacing, lever, [], context)
-            return found if wanted is None else region.restricted(found, *wanted)
+            found = found if wanted is None else region.restricted(found, *wanted)
+            return found if kept is None else kept.spared(found)
 
         places = _places(job, shape, faces, settings, result, levels, clearing, context)
         extents = _extents(settings, result)

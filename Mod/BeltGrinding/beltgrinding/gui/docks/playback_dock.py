@@ -13,6 +13,7 @@ from ...base.kinds import known
 from ...engine import Cancelled, InputError, core
 from ...objects import job_data
 from ...objects.kinds import Document, DocumentObject
+from ...objects.living import named
 from ...objects.simulation import Simulation
 from ..charts.strip_chart import StripChart
 from ..common.compat import QtCore, QtGui, translate
@@ -50,10 +51,7 @@ class Playback(QtGui.QDockWidget):
 
     def job(self) -> DocumentObject | None:
         """The job, or None if it or its document is no longer there."""
-        try:
-            return self.document.getObject(self.name)
-        except ReferenceError:
-            return None
+        return named(self.document, self.name)
 
     def show_result(self) -> None:
         """Shows the job's recording, or offers to make one."""

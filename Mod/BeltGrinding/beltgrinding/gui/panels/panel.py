@@ -9,6 +9,7 @@ import FreeCADGui as Gui
 
 from ...engine import InputError
 from ...objects.kinds import Document, DocumentObject
+from ...objects.living import GONE
 from ..common.compat import QtGui, buttons, translate
 from ..common.icons import qicon
 from ..common.kinds import Buttons
@@ -84,7 +85,7 @@ class Panel:
             self.end()
             if not Gui.Control.activeDialog():  # or the step is another panel's by now
                 commit(self.document)
-        except ReferenceError:
+        except GONE:
             pass  # the document was closed with it
 
     def getStandardButtons(self) -> Buttons:

@@ -18,6 +18,7 @@ from ..common.icons import qicon
 from ..common.kinds import Buttons, Image, Json
 from ..common.messages import error_text
 from ..common.runner import Background
+from ..common.task_progress import TaskRow
 from ..widgets.steady import steady
 
 WAIT = 300  # ms after the last move of the slider
@@ -83,6 +84,8 @@ class ContactPanel:
         self.image.setAlignment(QtCore.Qt.AlignCenter)
         body.addWidget(self.image)
         body.addWidget(self.state)
+        self.progress = TaskRow()
+        body.addWidget(self.progress)
         body.addStretch()
         self.timer = QtCore.QTimer(self.form)
         self.timer.setSingleShot(True)
@@ -110,15 +113,18 @@ class ContactPanel:
             self.timer.start(WAIT)
             return
         pose, program = self.number.value(), self.program.currentIndex() + 1
-        self.state.setText(translate("BeltGrinding", "Grinding up to pose {} ...").format(pose))
         self.task = Background(
             lambda context: contact.at_pose(self.data, pose, program, context),
             self.show,
             self.form,
         )
+        self.state.clear()
+        text = translate("BeltGrinding", "Grinding up to pose {}").format(pose)
+        self.progress.follow(self.task, text)
 
     def show(self, result: Any, error: BaseException | None) -> None:
         self.task = None
+        self.progress.end()
         if isinstance(error, Cancelled):
             return
         self.image.setVisible(error is None)

@@ -18,6 +18,7 @@ from ..common.figures import figure
 from ..common.kinds import Context, Numbers
 from ..common.messages import error_text
 from ..common.runner import Background
+from ..common.task_progress import TaskRow
 from ..widgets.form import FrameField
 from ..widgets.steady import steady
 
@@ -95,9 +96,10 @@ class RobotBox(QtGui.QGroupBox):
         self.list.setObjectName("reachEvents")
         self.list.setMaximumHeight(LIST_HEIGHT)
         self.list.currentRowChanged.connect(self._chosen)
-        for widget in (self.joints, self.check, self.list):
+        self.progress = TaskRow()
+        for widget in (self.joints, self.check, self.progress, self.list):
             layout.addRow(widget)
-            self.fields.append(widget)
+        self.fields += [self.joints, self.check]
         self.choice.currentIndexChanged.connect(self._choose)
         self._arrange()
 
@@ -159,9 +161,11 @@ class RobotBox(QtGui.QGroupBox):
                 return arm_check.follow(path, robot, job, context)
 
         self.task = Background(work, self._done, self)
+        self.progress.follow(self.task, translate("BeltGrinding", "Checking the program"))
 
     def _done(self, result: Any, error: BaseException | None) -> None:
         self.task = None
+        self.progress.end()
         self.check.setEnabled(True)
         if isinstance(error, Cancelled):
             return
@@ -209,4 +213,5 @@ class RobotBox(QtGui.QGroupBox):
         """The panel goes: a check under way is given up."""
         if self.task is not None:
             self.task.abandon()
+            self.progress.end()
             self.task = None

@@ -18,6 +18,7 @@ from ..common.icons import qicon
 from ..common.kinds import Buttons, Widget
 from ..common.messages import error_text
 from ..common.status_progress import StatusProgress, painted_once
+from ..common.task_progress import told
 from ..common.theme import warning_style
 from ..common.time_left import TimeLeft, duration
 from ..common.transaction import abort
@@ -98,10 +99,7 @@ class RunPanel:
 
     def progress(self, share: float) -> None:
         seconds = time.monotonic() - known(self.runner).start
-        text = self.doing().format(duration(seconds))
-        left = self.left.update(seconds, share)
-        if left is not None:
-            text += translate("BeltGrinding", "; about {} left").format(duration(left))
+        text = told(self.doing().format(duration(seconds)), self.left.update(seconds, share))
         with painted_once(self.form):
             self.bar.setValue(int(1000 * share))
             self._say(text)

@@ -6,6 +6,7 @@ import importlib
 
 import FreeCADGui as Gui
 
+from ..base import messages
 from ..engine import library as core_library
 from .common.compat import translate
 from .common.messages import tell
@@ -28,6 +29,9 @@ def register() -> tuple[dict[str, list[str]], list[str], dict[str, list[str]]]:
     except ImportError as error:
         tell(reason(error))
         return {}, [Manual.NAME], {}
+    from .common.field_words import in_words  # not above: commands have said what is missing
+
+    messages.show_keys_as(in_words)
     toolbars, menu, submenus = commands.register()
     return toolbars, [*menu, "Separator", Manual.NAME], submenus
 

@@ -97,9 +97,14 @@ class RobotBox(QtGui.QGroupBox):
         self.list.setMaximumHeight(LIST_HEIGHT)
         self.list.currentRowChanged.connect(self._chosen)
         self.progress = TaskRow()
-        for widget in (self.joints, self.check, self.progress, self.list):
+        checking = QtGui.QWidget()  # a hidden row of its own would leave a gap
+        rows = QtGui.QVBoxLayout(checking)
+        rows.setContentsMargins(0, 0, 0, 0)
+        for widget in (self.check, self.progress):
+            rows.addWidget(widget)
+        for widget in (self.joints, checking, self.list):
             layout.addRow(widget)
-        self.fields += [self.joints, self.check]
+            self.fields.append(widget)
         self.choice.currentIndexChanged.connect(self._choose)
         self._arrange()
 

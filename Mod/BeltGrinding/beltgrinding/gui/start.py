@@ -10,7 +10,7 @@ from ..base import messages
 from ..engine import library as core_library
 from .common.compat import translate
 from .common.messages import tell
-from .manual import Manual
+from .manual import Manual, help_key
 
 PACKAGES = "numpy", "jsonschema"  # else missed only when a job is made; package.xml names them
 
@@ -22,6 +22,7 @@ def register() -> tuple[dict[str, list[str]], list[str], dict[str, list[str]]]:
     and returns the manual alone. FreeCAD calls this when the workbench is first chosen.
     """
     Gui.addCommand(Manual.NAME, Manual())
+    Gui.getMainWindow().installEventFilter(help_key)
     try:
         for name in PACKAGES:
             importlib.import_module(name)

@@ -10,6 +10,7 @@ from ...base.kinds import known
 from ...objects.kinds import Document, DocumentObject
 from ...objects.living import goes_with, living
 from ..common.compat import QtCore, QtGui
+from ..common.help_pages import helped
 
 
 class ObjectDock(QtGui.QDockWidget):
@@ -24,6 +25,7 @@ class ObjectDock(QtGui.QDockWidget):
     def __init__(self) -> None:
         super().__init__(self.title(), Gui.getMainWindow())
         self.setObjectName(self.NAME)
+        helped(self, self.NAME.removesuffix("Dock"))
         self.obj: DocumentObject | None = None
 
     @staticmethod

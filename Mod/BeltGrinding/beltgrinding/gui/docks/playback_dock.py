@@ -17,6 +17,7 @@ from ...objects.living import named
 from ...objects.simulation import KEEP, Simulation, lost_recording
 from ..charts.strip_chart import StripChart
 from ..common.compat import QtCore, QtGui, translate
+from ..common.help_pages import helped
 from ..common.icons import media_icon
 from ..common.kinds import Array, QtEvent, Widget
 from ..common.messages import error_text
@@ -38,6 +39,7 @@ class Playback(QtGui.QDockWidget):
     def __init__(self, job: DocumentObject) -> None:
         super().__init__(translate("BeltGrinding", "Playback"), Gui.getMainWindow())
         self.setObjectName("BeltGrinding_PlaybackDock")
+        helped(self, "BeltGrinding_Playback")
         self.setAttribute(QtCore.Qt.WA_DeleteOnClose)
         self.document, self.name = job.Document, job.Name
         self.scene: Scene | None = None

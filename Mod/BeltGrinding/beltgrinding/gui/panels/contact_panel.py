@@ -14,6 +14,7 @@ from ...objects.belt_machine import WHEELS
 from ...objects.kinds import DocumentObject
 from ...objects.robot_path import RobotPath
 from ..common.compat import QtCore, QtGui, buttons, translate
+from ..common.help_pages import helped
 from ..common.icons import qicon
 from ..common.kinds import Buttons, Image, Json
 from ..common.messages import error_text
@@ -61,6 +62,7 @@ class ContactPanel:
         self.form.destroyed.connect(lambda *_: self._gone())  # whatever closes it
         self.form.setWindowTitle(translate("BeltGrinding", "Contact at a pose"))
         self.form.setWindowIcon(qicon("BeltGrinding_Contact"))
+        helped(self.form, "BeltGrinding_Contact")
         body = QtGui.QVBoxLayout(self.form)
         self.program = steady(QtGui.QComboBox())
         self.program.setObjectName("program")

@@ -11,6 +11,7 @@ from ...engine import InputError
 from ...objects.kinds import Document, DocumentObject
 from ...objects.living import GONE
 from ..common.compat import QtGui, buttons, translate
+from ..common.help_pages import helped
 from ..common.icons import qicon
 from ..common.kinds import Buttons
 from ..common.messages import error_text
@@ -41,6 +42,7 @@ class Panel:
         self.form = QtGui.QWidget()
         self.form.setWindowTitle(title)
         self.form.setWindowIcon(qicon(icon_name))
+        helped(self.form, icon_name)
         self.body = QtGui.QVBoxLayout(self.form)
         self.note = QtGui.QLabel()
         self.note.setObjectName("note")

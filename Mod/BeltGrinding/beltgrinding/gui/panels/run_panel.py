@@ -14,6 +14,7 @@ from ...base.kinds import known
 from ...engine import Cancelled, InputError
 from ...objects.kinds import DocumentObject
 from ..common.compat import QtGui, buttons, translate
+from ..common.help_pages import helped
 from ..common.icons import qicon
 from ..common.kinds import Buttons, Widget
 from ..common.messages import error_text
@@ -39,6 +40,7 @@ class RunPanel:
         self.form = QtGui.QWidget()
         self.form.setWindowTitle(title)
         self.form.setWindowIcon(qicon(icon_name))
+        helped(self.form, icon_name)
         self.form.destroyed.connect(self._gone)  # a macro or another command may close it, too
         self.state = QtGui.QLabel()
         self.state.setObjectName("state")

@@ -30,14 +30,20 @@ def _label(found: re.Match[str]) -> str:
 
 def named(key: str) -> str:
     """The field of a key, or of its last part where that tells it: “Belt machine: Force”; '' of anything else."""
+    found = label(key)
+    return translate("BeltGrinding", "“{}”").format(found) if found else ""
+
+
+def label(key: str) -> str:
+    """The same without the quotation marks."""
     if key == "design.unit_mm":  # a document's parts are in millimetres
-        return _quoted(translate("BeltGrinding", "the part's size"))
+        return str(translate("BeltGrinding", "the part's size"))
     keys = [key] if key in LABELS else _ending(key)
     names = {(_title(LABELS[one][0]), _field(LABELS[one][1])) for one in keys}
     fields = {field for _, field in names}
     if len(fields) != 1:
         return ""  # none, or several that are not the same
-    return _quoted(*([": ".join(names.pop())] if len(names) == 1 else fields))
+    return ": ".join(names.pop()) if len(names) == 1 else fields.pop()
 
 
 @lru_cache(maxsize=None)
@@ -47,10 +53,6 @@ def _ending(key: str) -> tuple[str, ...]:
 
 def _field(label: str) -> str:
     return UNIT.sub("", marked_there("BeltGrinding", label))
-
-
-def _quoted(text: str) -> str:
-    return translate("BeltGrinding", "“{}”").format(text)
 
 
 def _title(module: str) -> str:
@@ -77,4 +79,4 @@ def _option(option: str) -> str:
         "beltgrind calibrate-finish": translate("BeltGrinding", "Fit..."),
         "beltgrind scan": translate("BeltGrinding", "Compare a scan"),
     }.get(option, "")
-    return _quoted(_field(found)) if found else ""
+    return translate("BeltGrinding", "“{}”").format(UNIT.sub("", found)) if found else ""

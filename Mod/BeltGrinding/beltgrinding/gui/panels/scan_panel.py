@@ -20,6 +20,7 @@ from ..common.messages import error_text
 from ..common.runner import Background
 from ..common.task_progress import TaskRow
 from .panel import Panel
+from ..widgets.figure_table import FigureTable
 from ..widgets.steady import steady
 
 UNITS = (("mm", 1.0), ("m", 1000.0), ("cm", 10.0), ("in", 25.4), ("ft", 304.8), ("µm", 0.001))
@@ -76,13 +77,7 @@ class ScanPanel(Panel):
         self.body.addWidget(self.correct)
         self.progress = TaskRow()
         self.body.addWidget(self.progress)
-        self.table = QtGui.QTableWidget(0, 2)
-        self.table.setObjectName("figures")
-        self.table.horizontalHeader().hide()
-        self.table.verticalHeader().hide()
-        self.table.horizontalHeader().setSectionResizeMode(1, QtGui.QHeaderView.Stretch)
-        self.table.setEditTriggers(QtGui.QAbstractItemView.NoEditTriggers)
-        self.table.setMinimumHeight(TABLE_HEIGHT)
+        self.table = FigureTable("figures", TABLE_HEIGHT)
         self.body.addWidget(self.table, 1)
         self.finish()
         self._enable()
@@ -301,12 +296,7 @@ class ScanPanel(Panel):
                     f"{figure(100 * alignment['used_share'], '.1f')} %",
                 ),
             ]
-        self.table.setRowCount(len(rows))
-        for i, (name, text) in enumerate(rows):
-            self.table.setItem(i, 0, QtGui.QTableWidgetItem(name))
-            self.table.setItem(i, 1, QtGui.QTableWidgetItem(text))
-        self.table.resizeColumnsToContents()
-        self.table.resizeRowsToContents()
+        self.table.show_rows(rows)
 
     def check(self) -> None:
         if self.work is not None:

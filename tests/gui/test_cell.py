@@ -168,6 +168,7 @@ def test_the_robot_is_chosen_drawn_and_followed():
 
     def told():
         press("Check the whole program")
+        assert field("taskBar").isVisible() and field("taskCancel").isEnabled()
         wait(lambda: field("checkReach").isEnabled())
         rows = field("reachEvents")
         return [rows.item(i).text() for i in range(rows.count())]

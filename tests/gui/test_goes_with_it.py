@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 import FreeCAD
 import FreeCADGui as Gui
-from PySide import QtGui
+from PySide import QtCore, QtGui
 
 import beltgrinding
 from beltgrinding.gui.common import messages
@@ -132,7 +132,6 @@ def test_a_job_is_copied_and_pasted():
 
 def patch_answers():
     """FreeCAD asks which of the objects it depends on are to be copied: all."""
-    from PySide import QtCore
 
     def answer():
         for dialog in visible(QtGui.QDialog):
@@ -141,3 +140,32 @@ def patch_answers():
 
     for k in range(1, 20):
         QtCore.QTimer.singleShot(200 * k, answer)
+
+
+def test_deleting_the_part_of_a_job_asks():
+    job = prepare()
+    doc = job.Document
+    asked = []
+
+    def delete(name, answer):
+        def look():
+            for box in visible(QtGui.QMessageBox):
+                asked.append(box.text())
+                next(b for b in box.buttons() if answer in b.text()).click()
+
+        Gui.Selection.clearSelection()
+        Gui.Selection.addSelection(doc.Name, name)
+        timer = QtCore.QTimer()
+        timer.timeout.connect(look)
+        timer.start(50)
+        Gui.runCommand("Std_Delete")
+        settle()
+        timer.stop()
+
+    delete("Block", "No")
+    assert doc.getObject("Block") is not None
+    assert len(asked) == 1 and job.Label in asked[0], asked
+    delete("Stock", "Yes")  # the job's own goes unasked
+    assert doc.getObject("Stock") is None and len(asked) == 1, asked
+    delete("Block", "Yes")
+    assert doc.getObject("Block") is None and len(asked) == 2

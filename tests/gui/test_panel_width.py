@@ -11,6 +11,7 @@ from PySide import QtGui
 
 import beltgrinding
 from support import freecad as windows
+from support.cut_off import cut_off
 from support.hands import field, settle, start, visible, widgets
 from support.restoring import speak
 
@@ -70,7 +71,7 @@ def panels():
         and all(p.Asked for p in programs)
     )
     assert QtGui.QGuiApplication.primaryScreen().size().width() <= 1368
-    wide = {}
+    wide, short = {}, {}
 
     def buttons(area):
         return area.findChildren(QtGui.QDialogButtonBox)
@@ -96,6 +97,9 @@ def panels():
                 for w in area.widget().findChildren(QtGui.QWidget)
                 if w.isVisible() and w.minimumSizeHint().width() > 150
             )
+        for area in panels:
+            if found := cut_off(area):
+                short[name] = found
         view = Gui.getDocument(doc.Name)
         view.resetEdit() if view.getInEdit() else Gui.Control.closeDialog()
         settle()
@@ -179,6 +183,20 @@ def panels():
     ):
         Gui.runCommand("BeltGrinding_" + command)
         look(command)
+    docks = set()
+    for command in ("Verdict", "Section", "Playback"):
+        Gui.runCommand("BeltGrinding_" + command)
+        settle()
+        for dock in visible(QtGui.QDockWidget):
+            if dock.objectName().startswith("BeltGrinding_"):
+                docks.add(dock.objectName())
+                if found := cut_off(dock):
+                    short[dock.objectName()] = found
+                dock.close()
+        settle()
     assert not wide, wide
+    assert len(docks) == 3, docks
+    told = [f"{where}: {one}" for where, found in short.items() for one in found]
+    assert not short, "\n".join(told)
     # Panels that went while they worked have left nothing behind.
     assert not [w for w in widgets(QtGui.QWidget, "BeltGrinding_Progress") if w.isVisible()]

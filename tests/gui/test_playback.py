@@ -25,6 +25,7 @@ def test_a_recording_is_played_and_leaves_the_document_as_it_was():
     press("OK")
     dock.show_result()
     scene = dock.scene
+    field("playbackKept").click()
     doc.saveAs(str(Path("played.FCStd").absolute()))
     Gui.SendMsgToActiveView("Save")
     assert not Gui.ActiveDocument.Modified
@@ -123,6 +124,12 @@ def test_a_recording_is_played_and_leaves_the_document_as_it_was():
 def test_a_run_without_recording_forgets_the_old_one():
     job, doc, _ = prepared()
     dock = record()
+    kept = field("playbackKept")
+    assert not kept.isChecked() and not doc.Simulation.KeepRecording
+    kept.click()
+    assert doc.Simulation.KeepRecording
+    doc.undo()
+    assert not doc.Simulation.KeepRecording and not kept.isChecked()
     dock.close()
     assert "Recording" in doc.Simulation.PropertiesList
     job.Document.BeltMachine.Force = "20 N"

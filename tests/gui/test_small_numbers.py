@@ -293,7 +293,7 @@ def test_settings_that_grind_nothing_are_told():
     menu("Simulate")
     wait(lambda: doc.getObject("Simulation") is not None)
     texts = [label.text() for label in visible(QtGui.QLabel)]
-    assert any("law.coefficient_mm2_per_N is 0" in text for text in texts), texts
+    assert any("“Belt-grinding job: K” is 0" in text for text in texts), texts
 
 
 def test_an_entry_shows_the_units_of_the_trade_and_takes_any():

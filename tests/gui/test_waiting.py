@@ -17,6 +17,7 @@ from beltgrinding.engine import Cancelled
 from beltgrinding.gui.common import runner
 from beltgrinding.gui.common.runner import Background
 from beltgrinding.objects import importer, robot_path
+from beltgrinding.gui.common.task_progress import TaskRow
 from support.hands import menu, prepare, settle, start, wait, widgets
 from support.restoring import patch
 
@@ -31,7 +32,7 @@ def press_cancel():
     shown = dialogs()
     if not shown:
         return QtCore.QTimer.singleShot(20, press_cancel)
-    assert shown[0].labelText() == "Reading pass.csv" and shown[0].isModal()
+    assert shown[0].labelText().startswith("Reading pass.csv") and shown[0].isModal()
     button = shown[0].findChild(QtGui.QPushButton)
     press_on(button)
 
@@ -215,3 +216,34 @@ def test_garbage_is_freed_on_the_windows_thread_while_a_work_goes_on():
     other.abandon()
     wait(lambda: not other.thread.is_alive())
     wait(gc.isenabled, 5)
+
+
+def test_a_work_shows_how_far_it_is_and_what_is_left():
+    start()
+    steps, outcomes, threads = [0.25, 0.5], [], []
+
+    def work(context):
+        threads.append(threading.current_thread())
+        begin = time.monotonic()
+        while steps:
+            context.report(steps[0] if time.monotonic() - begin < 1.5 else steps[-1])
+            context.throw_if_cancelled()
+            time.sleep(0.01)
+
+    row = TaskRow()
+    bar, text = row.follower.bar, row.text
+    task = Background(work, lambda *outcome: outcomes.append(outcome))
+    assert not row.isVisible()
+    row.follow(task, "Counting")
+    assert row.isVisible() and (bar.minimum(), bar.maximum()) == (0, 0)
+    wait(lambda: bar.value() == 500, 5)
+    assert "Counting, " in text.text() and "left" in text.text(), text.text()
+    # A phase that begins anew: nobody knows how much is left.
+    steps[-1] = 0.1
+    wait(lambda: bar.maximum() == 0, 5)
+    assert "Counting, " in text.text() and "left" not in text.text(), text.text()
+    row.button.click()
+    wait(lambda: outcomes, 5)
+    assert isinstance(outcomes[0][1], Cancelled)
+    row.end()
+    assert not row.isVisible() and threads[0] is not threading.main_thread()

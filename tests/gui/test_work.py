@@ -314,7 +314,8 @@ def test_the_pressure_at_any_pose():
     colours = {first.pixel(x, first.height() // 2) for x in range(first.width())}
     assert len(colours) > 3  # a footprint, not one colour
     field("pose").setValue(6)
-    wait(lambda: "Grinding up to pose 6" in field("contactState").text())
+    wait(lambda: "Grinding up to pose 6" in field("taskText").text())
+    assert not field("contactState").text()
     wait(lambda: "Highest pressure" in field("contactState").text())
     press("Close")
 

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 from PySide import QtCore
 
-from beltgrinding.objects import api
+from beltgrinding.objects import api, preferences
 from support.hands import (
     field,
     menu,
@@ -60,7 +60,7 @@ def test_all_of_a_zone_is_in_sight_and_typed():
     zones = json.loads(job.Zones)
     assert zones[1]["edge_radius_mm"] == 2 and zones[1]["thickness_mm"] == [-0.1, 0.2]
     type_in("zoneThick", "x")
-    assert "no number" in field("note").text() and json.loads(job.Zones) == zones
+    assert "no length" in field("note").text() and json.loads(job.Zones) == zones
     type_in("zoneThick", "0.3")
     type_in("zoneRa", "0.8 T16%")
     assert "finish" in field("note").text(), "the job computes none"
@@ -90,6 +90,26 @@ def test_all_of_a_zone_is_in_sight_and_typed():
     assert table.horizontalScrollBar().maximum() == 0, "its columns are all in sight"
     press("OK")
     assert doc.UndoCount == steps + 1
+
+
+def test_limits_are_in_the_unit_of_deviations():
+    here = started()
+    api.set_zones(here.job, [{"name": "top", "faces": [6], "tolerance_mm": [-0.03, 0.125]}])
+    here.doc.recompute()
+    preferences.parameters().SetString("DeviationUnit", "µm")
+    menu("Tolerance zones...")
+    table = field("zones")
+    assert [table.item(0, k).text() for k in (2, 3)] == ["-30", "125"]
+    assert "-50 µm" in field("note").text(), field("note").text()
+    table.item(0, 2).setText("-70")
+    for name, text in (("zoneThin", "-7um"), ("zoneThick", "0.2 mm"), ("zoneEdge", "2")):
+        type_in(name, text)
+    (zone,) = json.loads(here.job.Zones)
+    assert zone["tolerance_mm"] == [-0.07, 0.125] and zone["thickness_mm"] == [-0.007, 0.2]
+    assert zone["edge_radius_mm"] == 2  # no deviation: in mm
+    press("Add")
+    assert [table.item(1, k).text() for k in (2, 3)] == ["-50", "50"]
+    press("OK")
 
 
 def test_an_open_simulation_panel_follows_the_limits():

@@ -13,7 +13,7 @@ import FreeCAD
 import beltgrinding
 from beltgrinding import InputError
 from beltgrinding.engine import core
-from beltgrinding.objects import api, deviation, job_inputs, result_files
+from beltgrinding.objects import api, deviation, job_inputs, result_files, simulation as results
 from beltgrinding.simulation import run as runs
 from support.block import block, make, write_pass
 
@@ -70,6 +70,8 @@ def test_the_steps_of_a_recording_come_back_as_they_were():
     result = runs.run(job_inputs.to_data(job, tempfile.mkdtemp()), None, core.Recording())
     assert len(result.steps["time"]) > 10
     simulation = api.store_result(job, result, "x")
+    job_name = job.Name
+    assert not simulation.KeepRecording
 
     def compare(simulation):
         recording, steps = simulation.Proxy.recording(simulation)
@@ -78,12 +80,30 @@ def test_the_steps_of_a_recording_come_back_as_they_were():
             assert (steps[name] == values).all() and steps[name].flags.writeable, name
             assert steps[name].dtype == np.array(values.tolist()).dtype, name
 
+    def saved(doc):
+        doc.saveAs(str(Path("steps.FCStd").resolve()))
+        FreeCAD.closeDocument(doc.Name)
+        size = Path("steps.FCStd").stat().st_size
+        doc = FreeCAD.openDocument(str(Path("steps.FCStd").resolve()))
+        return doc, next(o for o in doc.Objects if hasattr(o, "FileSums")), size
+
     compare(simulation)
-    doc.saveAs(str(Path("steps.FCStd").resolve()))
-    FreeCAD.closeDocument(doc.Name)
-    doc = FreeCAD.openDocument(str(Path("steps.FCStd").resolve()))
-    simulation = next(o for o in doc.Objects if hasattr(o, "FileSums"))
+    simulation.KeepRecording = True
+    doc, simulation, large = saved(doc)
     compare(simulation)
+    assert simulation.KeepRecording
+
+    # It is saved only where that is wanted, also after another run.
+    simulation.KeepRecording = False
+    doc, simulation, small = saved(doc)
+    assert simulation.Proxy.recording(simulation) is None and results.lost_recording(simulation)
+    assert small < large - 0.3 * result.recording.bytes, (small, large, result.recording.bytes)
+    api.store_result(next(o for o in doc.Objects if o.Name == job_name), result, "x")
+    compare(simulation)
+    doc, simulation, small_again = saved(doc)
+    assert simulation.Proxy.recording(simulation) is None and abs(small_again - small) < 5000
+    simulation.KeepRecording = True
+    result_files.store(simulation, {"Recording": b""})
 
     # An older version wrote them as lists of numbers.
     older = {"steps": {name: values.tolist() for name, values in result.steps.items()}}

@@ -27,6 +27,7 @@ OF_A_BELT = "event.belt_"  # codes of facts on a belt that is pressed without a 
 # (code, English words, what follows them) of a body's name, None of one that the user gave.
 NamedBody = Callable[[str], tuple[str, str, str] | None]
 _told: NamedBody = lambda name: None
+_words: Callable[[str], str] = lambda text: text
 BELT_TITLES = {"wheel_too_large": "Belt spans a hollow"}  # where the kind's code names the wheel
 
 
@@ -92,6 +93,12 @@ def name_bodies(told: NamedBody) -> None:
     _told = told
 
 
+def show_keys_as(words: Callable[[str], str]) -> None:
+    """Takes what says a sentence in the words of those who read it: the window has labels, no keys."""
+    global _words
+    _words = words
+
+
 def body(name: str, language: str) -> str:
     """The name of a body of the cell: those of machine, part, stock and arm are ours, the others the user's."""
     known = _told(name)
@@ -104,7 +111,7 @@ def body(name: str, language: str) -> str:
 def _argument(name: str, value: Any, language: str) -> Any:
     """A value as it is told: a reason may be a fact itself."""
     if hasattr(value, "code") or isinstance(value, dict):
-        return sentence(value, language)
+        return _sentence(value, language)
     return body(value, language) if name in BODIES else value
 
 
@@ -124,6 +131,10 @@ def _filled(code: str, text: str, arguments: Mapping[str, Any], language: str) -
 def sentence(told: Any, language: str) -> str:
     """What a fact, an error or a fact of an event (a dict) says. ``language``: "en" or "de". Of an
     error of another kind, what it says itself."""
+    return _words(_sentence(told, language))
+
+
+def _sentence(told: Any, language: str) -> str:
     if isinstance(told, dict):
         parts = [*told.get("context", ()), told, *told.get("remarks", ())]
         return "".join(_filled(p["code"], p["text"], p["arguments"], language) for p in parts)
@@ -197,5 +208,5 @@ def event_title(event: Mapping[str, Any]) -> str:
 def event_message(event: Mapping[str, Any], language: str) -> str:
     """What happened, one line. Of a result without facts, of a version before 0.2, in English."""
     if language == "en" or not event.get("facts"):
-        return str(event["message"])
+        return _words(str(event["message"]))
     return "; ".join(sentence(fact, language) for fact in event["facts"])

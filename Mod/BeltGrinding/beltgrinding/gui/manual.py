@@ -13,8 +13,9 @@ import FreeCADGui as Gui
 
 from ..base.resources import documentation
 from .common.compat import QtCore, QtGui, translate
+from .common.help_pages import page_of
 from .common.icons import icon
-from .common.kinds import Widget
+from .common.kinds import QtEvent, Widget
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 SIZE = 960, 800  # of the window at first, pixels
@@ -68,6 +69,23 @@ def show_manual(page: str = "index.md") -> Widget:
     view = dialog.findChild(QtGui.QTextBrowser)
     view.setSource(QtCore.QUrl.fromLocalFile(str(Path(documentation(), page))))
     return dialog
+
+
+class HelpKey(QtCore.QObject):
+    """F1 in a panel or a dock of ours opens its page of the manual; elsewhere F1 is FreeCAD's."""
+
+    def eventFilter(self, window: Any, event: QtEvent) -> bool:
+        # FreeCAD's shortcuts ask for a key first; the key itself does not come this far from a task panel.
+        if event.type() != QtCore.QEvent.ShortcutOverride or event.key() != QtCore.Qt.Key_F1:
+            return False
+        page = page_of(QtGui.QApplication.focusWidget())
+        if page:
+            event.accept()
+            QtCore.QTimer.singleShot(0, lambda: show_manual(page))
+        return bool(page)
+
+
+help_key = HelpKey()
 
 
 class Manual:

@@ -6,10 +6,11 @@ import importlib
 
 import FreeCADGui as Gui
 
+from ..base import messages
 from ..engine import library as core_library
 from .common.compat import translate
 from .common.messages import tell
-from .manual import Manual
+from .manual import Manual, help_key
 
 PACKAGES = "numpy", "jsonschema"  # else missed only when a job is made; package.xml names them
 
@@ -21,6 +22,7 @@ def register() -> tuple[dict[str, list[str]], list[str], dict[str, list[str]]]:
     and returns the manual alone. FreeCAD calls this when the workbench is first chosen.
     """
     Gui.addCommand(Manual.NAME, Manual())
+    Gui.getMainWindow().installEventFilter(help_key)
     try:
         for name in PACKAGES:
             importlib.import_module(name)
@@ -28,6 +30,9 @@ def register() -> tuple[dict[str, list[str]], list[str], dict[str, list[str]]]:
     except ImportError as error:
         tell(reason(error))
         return {}, [Manual.NAME], {}
+    from .common.field_words import in_words  # not above: commands have said what is missing
+
+    messages.show_keys_as(in_words)
     toolbars, menu, submenus = commands.register()
     return toolbars, [*menu, "Separator", Manual.NAME], submenus
 

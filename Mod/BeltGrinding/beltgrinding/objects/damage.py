@@ -29,6 +29,7 @@ MESH_HEAD, MESH_END = (
     24,
 )  # bytes: numbers of points, 12 each, facets, 24
 ROOM = 256 << 20  # bytes that reading a damaged document may take beyond what it takes already
+NOT_SAVED = 1 << 4  # of a property's status: FreeCAD writes that it is there, and not what it holds
 MOST = 1 << 30  # bytes of Document.xml that are looked at
 STEADY = ("Proxy", "Label", "ExpressionEngine")  # FreeCAD's own
 
@@ -110,7 +111,8 @@ def _sound(held: ElementTree.Element, kind: str, names: set[str | None]) -> bool
     """Whether what stands in Document.xml of a property can be what was written."""
     first = next(iter(held), None)
     if first is None:
-        return False
+        status = held.get("status") or ""
+        return status.isdigit() and bool(int(status) & NOT_SAVED)
     value: Any = first.get("value")
     if first.tag == "Float":
         try:

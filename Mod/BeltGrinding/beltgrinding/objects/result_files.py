@@ -23,6 +23,11 @@ SUMS = "FileSums"
 OUTPUTS = (Output(SUMS, "String", "Result", "SHA-256 of the files of the result, as JSON", True),)
 
 
+def stored(obj: DocumentObject, name: str) -> bool:
+    """Whether the property ``name`` is there and once held a file of the result."""
+    return name in obj.PropertiesList and name in _sums(obj)
+
+
 def read(obj: DocumentObject, name: str) -> bytes | None:
     """The bytes of the property ``name``; as ``sound`` else."""
     path = sound(obj, name)

@@ -66,9 +66,12 @@ OUTPUTS = (
 )
 
 
+KEEP = "KeepRecording"
+
+
 class Simulation(Proxy):
     """Proxy. ``HeightField`` and ``Recording`` (if it was recorded) are HDF5 files, kept inside the
-    document's file.
+    document's file; the recording, which is most of it, only where ``KeepRecording`` says so.
     """
 
     TYPE = "BeltGrinding::Simulation"
@@ -83,6 +86,15 @@ class Simulation(Proxy):
         add_outputs(obj, OUTPUTS)
         add_outputs(obj, result_files.OUTPUTS)
         report_data.add(obj)
+        if KEEP not in obj.PropertiesList:
+            text = "save the recording with the document, for playback after it is opened again"
+            obj.addProperty("App::PropertyBool", KEEP, "Result", text)
+            setattr(obj, KEEP, bool(getattr(obj, "Recording", "")))  # an older document's stays
+
+    def onChanged(self, obj: DocumentObject, name: str) -> None:
+        super().onChanged(obj, name)
+        if name == KEEP:
+            _arrange_recording(obj)
 
     def field(self, obj: DocumentObject) -> Field | None:
         """core.HeightField of the result; None if there is none."""
@@ -216,6 +228,18 @@ def _prepare_recording(obj: DocumentObject, result: Result) -> None:
     text = "what changed in every step, for playback"
     obj.addProperty("App::PropertyFileIncluded", "Recording", "Result", text)
     obj.setEditorMode("Recording", 1)
+    _arrange_recording(obj)
+
+
+def _arrange_recording(obj: DocumentObject) -> None:
+    """Has FreeCAD save the recording or leave it out."""
+    if "Recording" in obj.PropertiesList:
+        obj.setPropertyStatus("Recording", "-Transient" if getattr(obj, KEEP) else "Transient")
+
+
+def lost_recording(obj: DocumentObject) -> bool:
+    """Whether the run was recorded, and the recording not saved with the document."""
+    return result_files.stored(obj, "Recording") and not obj.Recording
 
 
 def _without_bulk(job: Json) -> dict[str, Any]:

@@ -119,5 +119,5 @@ def _how_to_set() -> str:
     return translate(
         "BeltGrinding",
         "To have the program set them, enter their names or numbers on the controller in the path's "
-        "properties ProgramBase and ProgramTool.",
+        "properties “Program Base” and “Program Tool”.",
     )

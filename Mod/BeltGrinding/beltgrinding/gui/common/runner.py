@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from ...engine import Cancelled, RunContext
 from ...objects import api, deviation, job_data, job_inputs, simulation as results
 from ...objects.kinds import DocumentObject
+from ...objects.living import named
 from ...simulation import run as runs
 from .compat import QtCore, translate
 from .kinds import Context, Done, Told, Widget
@@ -161,10 +162,7 @@ class Runner(Background):
 
     def job(self) -> DocumentObject | None:
         """The job, or None if it or its document is no longer there."""
-        try:
-            return self.document.getObject(self.name)
-        except ReferenceError:
-            return None
+        return named(self.document, self.name)
 
     def abandon(self, then: Callable[[], object] = lambda: None) -> None:
         """Cancels, and stores nothing even if the run has just ended."""

@@ -11,8 +11,10 @@ from ...engine import Cancelled
 from .compat import QtCore, QtGui, translate
 from .kinds import Context, Widget
 from .runner import Background
+from .task_progress import Follower
 
 PATIENCE = 0.2  # s; what is done by then needs no dialog
+WIDTH = 400  # pixels
 
 
 def wait(work: Callable[[Context], Any], text: str) -> Any:
@@ -30,12 +32,15 @@ def wait(work: Callable[[Context], Any], text: str) -> Any:
     if not background.thread.is_alive():
         background.forget()
         return _given(*background.outcome)
-    dialog = _dialog(text)
+    dialog, bar = _dialog(text)
+    follower = Follower(bar, dialog.setLabelText)
+    follower.follow(background, text)
     dialog.canceled.connect(loop.quit)
     try:
         dialog.show()
         (loop.exec_ if hasattr(loop, "exec_") else loop.exec)()
     finally:
+        follower.end()
         dialog.canceled.disconnect(loop.quit)
         dialog.close()
         dialog.deleteLater()
@@ -51,8 +56,8 @@ def _given(result: Any, error: BaseException | None) -> Any:
     return result
 
 
-def _dialog(text: str) -> Widget:
-    """A QProgressDialog: these FreeCAD lets have clicks and keys where it shows its wait cursor, as its
+def _dialog(text: str) -> tuple[Widget, Widget]:
+    """A QProgressDialog and its bar: these FreeCAD lets have clicks and keys where it shows its wait cursor, as its
     own import commands do.
     """
     dialog = QtGui.QProgressDialog(Gui.getMainWindow())
@@ -60,8 +65,11 @@ def _dialog(text: str) -> Widget:
     dialog.setWindowTitle(translate("BeltGrinding", "Belt grinding"))
     dialog.setLabelText(text)
     dialog.setCancelButtonText(translate("BeltGrinding", "Cancel"))
-    dialog.setRange(0, 0)  # how much there is to do is not known
+    bar = QtGui.QProgressBar()
+    bar.setTextVisible(False)
+    dialog.setBar(bar)
+    dialog.setMinimumWidth(WIDTH)
     dialog.setMinimumDuration(2**31 - 1)  # shown when it is needed, not by a guess
     dialog.setWindowModality(QtCore.Qt.ApplicationModal)
     dialog.setAutoClose(False)
-    return dialog
+    return dialog, bar

@@ -7,8 +7,10 @@ from typing import Any
 import FreeCADGui as Gui
 
 from ...base.kinds import known
-from ...objects.kinds import DocumentObject
+from ...objects.kinds import Document, DocumentObject
+from ...objects.living import goes_with, living
 from ..common.compat import QtCore, QtGui
+from ..common.help_pages import helped
 
 
 class ObjectDock(QtGui.QDockWidget):
@@ -23,6 +25,7 @@ class ObjectDock(QtGui.QDockWidget):
     def __init__(self) -> None:
         super().__init__(self.title(), Gui.getMainWindow())
         self.setObjectName(self.NAME)
+        helped(self, self.NAME.removesuffix("Dock"))
         self.obj: DocumentObject | None = None
 
     @staticmethod
@@ -68,8 +71,18 @@ class ObjectDock(QtGui.QDockWidget):
 
     def living(self) -> DocumentObject | None:
         """The object shown, None once it is no longer in its document."""
-        obj = self.obj
-        try:
-            return obj if obj is not None and obj.Document.getObject(obj.Name) is not None else None
-        except (ReferenceError, RuntimeError):
-            return None
+        return living(self.obj)
+
+    def forget(self) -> None:
+        """The object goes, or has gone."""
+        raise NotImplementedError
+
+    def slotDeletedObject(self, obj: DocumentObject) -> None:
+        """An object of a document goes."""
+        if self.obj is not None and obj == self.obj:
+            self.forget()
+
+    def slotDeletedDocument(self, document: Document) -> None:
+        """A document is closed."""
+        if self.obj is not None and goes_with(self.obj, document):
+            self.forget()

@@ -13,14 +13,17 @@ from ...base.kinds import known
 from ...engine import Cancelled, InputError, core
 from ...objects import job_data
 from ...objects.kinds import Document, DocumentObject
-from ...objects.simulation import Simulation
+from ...objects.living import named
+from ...objects.simulation import KEEP, Simulation, lost_recording
 from ..charts.strip_chart import StripChart
 from ..common.compat import QtCore, QtGui, translate
+from ..common.help_pages import helped
 from ..common.icons import media_icon
 from ..common.kinds import Array, QtEvent, Widget
 from ..common.messages import error_text
 from ..common.runner import Runner
 from ..common.theme import warning_style
+from ..common.transaction import transaction
 from ..scene.playback_scene import SAME, Scene
 from ..widgets.steady import steady
 
@@ -36,6 +39,7 @@ class Playback(QtGui.QDockWidget):
     def __init__(self, job: DocumentObject) -> None:
         super().__init__(translate("BeltGrinding", "Playback"), Gui.getMainWindow())
         self.setObjectName("BeltGrinding_PlaybackDock")
+        helped(self, "BeltGrinding_Playback")
         self.setAttribute(QtCore.Qt.WA_DeleteOnClose)
         self.document, self.name = job.Document, job.Name
         self.scene: Scene | None = None
@@ -50,10 +54,7 @@ class Playback(QtGui.QDockWidget):
 
     def job(self) -> DocumentObject | None:
         """The job, or None if it or its document is no longer there."""
-        try:
-            return self.document.getObject(self.name)
-        except ReferenceError:
-            return None
+        return named(self.document, self.name)
 
     def show_result(self) -> None:
         """Shows the job's recording, or offers to make one."""
@@ -80,11 +81,7 @@ class Playback(QtGui.QDockWidget):
         """What is there without a recording."""
         panel = QtGui.QWidget()
         body = QtGui.QVBoxLayout(panel)
-        self.state = QtGui.QLabel(
-            translate("BeltGrinding", "There is no result yet.")
-            if simulation is None
-            else translate("BeltGrinding", "This result was not recorded.")
-        )
+        self.state = QtGui.QLabel(_without_recording(simulation))
         self.state.setWordWrap(True)
         self.bar = QtGui.QProgressBar()
         self.bar.setRange(0, 1000)
@@ -181,6 +178,12 @@ class Playback(QtGui.QDockWidget):
         self.moving.setEnabled(scene.cell.cell()["holding"] == "part_in_hand")
         self.moving.toggled.connect(scene.cell.set_moving)
         row.addWidget(self.moving)
+        self.kept = QtGui.QCheckBox(translate("BeltGrinding", "Save with the document"))
+        self.kept.setObjectName("playbackKept")
+        self.kept.setToolTip(simulation.getDocumentationOfProperty(KEEP))
+        self.kept.setChecked(getattr(simulation, KEEP))
+        self.kept.toggled.connect(lambda on: _keep(simulation, on))
+        row.addWidget(self.kept)
         self.events = simulation.Proxy.events(simulation)
         self.chart = StripChart(steps, self.events, scene.duration)
         self.chart.chosen = self.scrub
@@ -267,6 +270,8 @@ class Playback(QtGui.QDockWidget):
         if obj == self.scene.simulation:
             if name == "OutOfDate":
                 self.stale.setVisible(obj.OutOfDate)
+            elif name == KEEP:
+                self.kept.setChecked(getattr(obj, KEEP))
             elif name in ("Recording", "HeightField", "Fingerprint"):
                 self._later(self.show_result)
         elif obj == self.scene.deviation and name in SCALE:
@@ -318,6 +323,22 @@ class Playback(QtGui.QDockWidget):
             self.runner = None
         self._clear()
         super().closeEvent(event)
+
+
+def _without_recording(simulation: DocumentObject | None) -> str:
+    """Why there is nothing to play."""
+    if simulation is None:
+        return translate("BeltGrinding", "There is no result yet.")
+    if lost_recording(simulation):
+        return translate("BeltGrinding", "The recording was not saved with the document.")
+    return translate("BeltGrinding", "This result was not recorded.")
+
+
+def _keep(simulation: DocumentObject, on: bool) -> None:
+    """Has the recording saved with the document, or not; an undo step."""
+    if getattr(simulation, KEEP) != on:
+        with transaction(simulation.Document, translate("BeltGrinding", "Save the recording")):
+            setattr(simulation, KEEP, on)
 
 
 def show(job: DocumentObject) -> Playback:

@@ -13,7 +13,8 @@ from ...engine import InputError
 from ...inspection import section as sections, section_plot
 from ...objects import section as objects
 from ...objects.fields import field_of, forget_field
-from ...objects.kinds import Document, DocumentObject, Point
+from ...objects.kinds import DocumentObject, Point
+from ...objects.living import GONE
 from ...objects.proxy import type_of
 from ..charts.section_chart import SectionChart
 from ..common.compat import QtCore, QtGui, translate
@@ -306,7 +307,7 @@ class SectionDock(ObjectDock):
         for view, call in self.picking:
             try:
                 view.removeEventCallback("SoMouseButtonEvent", call)
-            except RuntimeError:
+            except GONE:
                 pass  # the view is closed
         self.picking = []
         if self.pick.isChecked():
@@ -366,21 +367,7 @@ class SectionDock(ObjectDock):
         elif name == "OutOfDate" and obj == self.obj:
             QtCore.QTimer.singleShot(0, self.refresh)
 
-    def slotDeletedObject(self, obj: DocumentObject) -> None:
-        if self.obj is not None and obj == self.obj:
-            self._forget()
-
-    def slotDeletedDocument(self, document: Document) -> None:
-        if not self._of_another(document):
-            self._forget()
-
-    def _of_another(self, document: Document) -> bool:
-        try:
-            return self.obj is None or self.obj.Document != document
-        except (ReferenceError, RuntimeError):
-            return False
-
-    def _forget(self) -> None:
+    def forget(self) -> None:
         self._stop_picking()
         self.obj = None
         forget_field()

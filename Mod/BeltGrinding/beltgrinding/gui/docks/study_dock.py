@@ -15,7 +15,7 @@ from ...base.kinds import known
 from ...base.messages import sentence
 from ...engine import InputError
 from ...objects import api, stored_facts
-from ...objects.kinds import Document, DocumentObject
+from ...objects.kinds import DocumentObject
 from ...studies import names, report, table as tables
 from ..common.compat import QtCore, QtGui, translate
 from ..common.kinds import Json, Widget
@@ -359,19 +359,7 @@ class StudyDock(ObjectDock):
         elif name == "Fingerprint" and obj.Fingerprint:
             QtCore.QTimer.singleShot(0, self.refresh)
 
-    def slotDeletedObject(self, obj: DocumentObject) -> None:
-        if self.obj is not None and obj == self.obj:
-            self._forget()
-
-    def slotDeletedDocument(self, document: Document) -> None:
-        try:
-            other = self.obj is None or self.obj.Document != document
-        except (ReferenceError, RuntimeError):
-            other = False
-        if not other:
-            self._forget()
-
-    def _forget(self) -> None:
+    def forget(self) -> None:
         self.obj = None
         self._clear()
         self.hide()

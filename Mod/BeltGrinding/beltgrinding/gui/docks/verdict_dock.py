@@ -12,7 +12,7 @@ from ...base.kinds import known
 from ...objects import api, raster_path, verdict as objects
 from ...objects.belt_machine import half_size
 from ...objects.job_data import children, face_name
-from ...objects.kinds import Document, DocumentObject, Field
+from ...objects.kinds import DocumentObject, Field
 from ...objects.robot_path import RobotPath
 from ...objects.fields import forget_field
 from ..common.compat import QtCore, QtGui, translate
@@ -117,7 +117,7 @@ class VerdictDock(ObjectDock):
 
     def show_object(self, obj: DocumentObject) -> None:
         if self.obj is not obj:
-            self._forget()
+            self.forget()
         super().show_object(obj)
 
     def preferences_changed(self) -> None:
@@ -129,7 +129,7 @@ class VerdictDock(ObjectDock):
         """Shows the object as it is now."""
         obj = self.living()
         if obj is None:
-            return self._forget()
+            return self.forget()
         self.found = obj.Proxy.data(obj)
         for made, rows in (
             (self.regions, region_rows),
@@ -307,18 +307,9 @@ class VerdictDock(ObjectDock):
             QtCore.QTimer.singleShot(0, self.refresh)
 
     def slotDeletedObject(self, obj: DocumentObject) -> None:
-        if self.obj is None:
-            return
-        if obj == self.obj or obj == self.shown_path:
-            self._forget()
-
-    def slotDeletedDocument(self, document: Document) -> None:
-        try:
-            other = self.obj is None or self.obj.Document != document
-        except (ReferenceError, RuntimeError):
-            other = False
-        if not other:
-            self._forget()
+        if self.obj is not None and obj == self.shown_path:
+            self.forget()
+        super().slotDeletedObject(obj)
 
     def closeEvent(self, event: QtEvent) -> None:
         self._unmark()
@@ -334,7 +325,7 @@ class VerdictDock(ObjectDock):
         self.wheel = self.scene = self.shown_path = self.sight = None
         self.poses.hide()
 
-    def _forget(self) -> None:
+    def forget(self) -> None:
         self._unmark()
         self.obj = self.found = self.field = self.cluster_of = None
         forget_field()

@@ -16,6 +16,7 @@ from ...objects import job_data, job_inputs, properties
 from ...objects.kinds import DocumentObject
 from ..common.compat import QtCore, QtGui, buttons, translate
 from ..common.figures import figure
+from ..common.help_pages import helped
 from ..common.icons import qicon
 from ..common.kinds import Buttons, Context, Json, Layout, Table, Widget
 from ..common.messages import error_text
@@ -54,6 +55,7 @@ class CalibrationPanel:
         self.form.destroyed.connect(lambda *_: self._gone())  # whatever closes it
         self.form.setWindowTitle(translate("BeltGrinding", "Calibrate removal law"))
         self.form.setWindowIcon(qicon("BeltGrinding_Calibrate"))
+        helped(self.form, "BeltGrinding_Calibrate")
         body = QtGui.QVBoxLayout(self.form)
         fields = QtGui.QFormLayout()
         fields.setRowWrapPolicy(QtGui.QFormLayout.WrapAllRows)

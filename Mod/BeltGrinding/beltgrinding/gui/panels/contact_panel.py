@@ -14,10 +14,12 @@ from ...objects.belt_machine import WHEELS
 from ...objects.kinds import DocumentObject
 from ...objects.robot_path import RobotPath
 from ..common.compat import QtCore, QtGui, buttons, translate
+from ..common.help_pages import helped
 from ..common.icons import qicon
 from ..common.kinds import Buttons, Image, Json
 from ..common.messages import error_text
 from ..common.runner import Background
+from ..common.task_progress import TaskRow
 from ..widgets.steady import steady
 
 WAIT = 300  # ms after the last move of the slider
@@ -60,6 +62,7 @@ class ContactPanel:
         self.form.destroyed.connect(lambda *_: self._gone())  # whatever closes it
         self.form.setWindowTitle(translate("BeltGrinding", "Contact at a pose"))
         self.form.setWindowIcon(qicon("BeltGrinding_Contact"))
+        helped(self.form, "BeltGrinding_Contact")
         body = QtGui.QVBoxLayout(self.form)
         self.program = steady(QtGui.QComboBox())
         self.program.setObjectName("program")
@@ -83,6 +86,8 @@ class ContactPanel:
         self.image.setAlignment(QtCore.Qt.AlignCenter)
         body.addWidget(self.image)
         body.addWidget(self.state)
+        self.progress = TaskRow()
+        body.addWidget(self.progress)
         body.addStretch()
         self.timer = QtCore.QTimer(self.form)
         self.timer.setSingleShot(True)
@@ -110,15 +115,18 @@ class ContactPanel:
             self.timer.start(WAIT)
             return
         pose, program = self.number.value(), self.program.currentIndex() + 1
-        self.state.setText(translate("BeltGrinding", "Grinding up to pose {} ...").format(pose))
         self.task = Background(
             lambda context: contact.at_pose(self.data, pose, program, context),
             self.show,
             self.form,
         )
+        self.state.clear()
+        text = translate("BeltGrinding", "Grinding up to pose {}").format(pose)
+        self.progress.follow(self.task, text)
 
     def show(self, result: Any, error: BaseException | None) -> None:
         self.task = None
+        self.progress.end()
         if isinstance(error, Cancelled):
             return
         self.image.setVisible(error is None)

@@ -10,6 +10,7 @@ from ..common.figures import figure, length_text
 from ..common.kinds import Quantity
 from ..common.messages import error_text
 from ..scene.probe import Probe
+from ..widgets.figure_table import FigureTable
 from ..widgets.form import Form
 from .job_panel import check_tolerance, mark_tolerance
 from .panel import Panel
@@ -46,13 +47,7 @@ class DeviationPanel(Panel):
         shown = self._shown()
         if len(shown) > 1:
             colours.add("ColourBy", translate("BeltGrinding", "Show"), shown)
-        self.table = QtGui.QTableWidget(0, 2)
-        self.table.setObjectName("statistics")
-        self.table.horizontalHeader().hide()
-        self.table.verticalHeader().hide()
-        self.table.horizontalHeader().setSectionResizeMode(1, QtGui.QHeaderView.Stretch)
-        self.table.setMinimumHeight(TABLE_HEIGHT)
-        self.table.setEditTriggers(QtGui.QAbstractItemView.NoEditTriggers)
+        self.table = FigureTable("statistics", TABLE_HEIGHT)
         self.body.addWidget(self.table, 1)
         self.probe = Probe(obj)
         self.body.addWidget(self.probe)
@@ -161,12 +156,7 @@ class DeviationPanel(Panel):
                     f"{figure(obj.CrossedArea, '.1f')} %",
                 ),
             )
-        self.table.setRowCount(len(rows))
-        for i, (name, text) in enumerate(rows):
-            self.table.setItem(i, 0, QtGui.QTableWidgetItem(name))
-            self.table.setItem(i, 1, QtGui.QTableWidgetItem(text))
-        self.table.resizeColumnsToContents()
-        self.table.resizeRowsToContents()
+        self.table.show_rows(rows)
 
     def close(self) -> None:
         self.probe.release()

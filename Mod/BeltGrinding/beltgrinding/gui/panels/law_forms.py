@@ -89,3 +89,10 @@ class LawForms(QtGui.QWidget):
         if obj.WearModel == "power":
             wear |= {"WearScale", "WearExponent"}
         self.wear.show_rows(wear)
+        unit = "J" if obj.WearVariable == "work" else "mm³"
+        scale = translate("BeltGrinding", "Falls to 1/e in")
+        if obj.WearModel == "power":
+            scale = translate("BeltGrinding", "Scale of the fall")
+        first = translate("BeltGrinding", "falls to 1/e in")
+        for name, text in (("WearScale", scale), ("WearFirstScale", first)):
+            self.wear.rows[name][0].setText(f"{text}, {unit}")

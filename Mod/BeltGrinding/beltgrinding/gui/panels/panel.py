@@ -9,7 +9,9 @@ import FreeCADGui as Gui
 
 from ...engine import InputError
 from ...objects.kinds import Document, DocumentObject
+from ...objects.living import GONE
 from ..common.compat import QtGui, buttons, translate
+from ..common.help_pages import helped
 from ..common.icons import qicon
 from ..common.kinds import Buttons
 from ..common.messages import error_text
@@ -40,6 +42,7 @@ class Panel:
         self.form = QtGui.QWidget()
         self.form.setWindowTitle(title)
         self.form.setWindowIcon(qicon(icon_name))
+        helped(self.form, icon_name)
         self.body = QtGui.QVBoxLayout(self.form)
         self.note = QtGui.QLabel()
         self.note.setObjectName("note")
@@ -84,7 +87,7 @@ class Panel:
             self.end()
             if not Gui.Control.activeDialog():  # or the step is another panel's by now
                 commit(self.document)
-        except ReferenceError:
+        except GONE:
             pass  # the document was closed with it
 
     def getStandardButtons(self) -> Buttons:

@@ -13,7 +13,7 @@ from ...planning import pictures, reasons
 from ..common.compat import QtCore, QtGui, translate
 from ..common.figures import figure
 from ..charts.feed_chart import FeedChart
-from ..common.kinds import Json, Table, Texts
+from ..common.kinds import Json, QtEvent, Table, Texts
 from ..common.report_language import language
 from ..widgets.picture_label import PictureLabel
 
@@ -201,7 +201,7 @@ def _passes(one: Json) -> str:
 
 
 def _table(name: str, *columns: str, stretched: int = 0) -> Table:
-    table = QtGui.QTableWidget(0, len(columns))
+    table = _Table(0, len(columns))
     table.setObjectName(name)
     table.setHorizontalHeaderLabels(list(columns))
     table.verticalHeader().hide()
@@ -215,6 +215,14 @@ def _table(name: str, *columns: str, stretched: int = 0) -> Table:
     head.setMinimumSectionSize(24)
     table.setMinimumWidth(10)
     return table
+
+
+class _Table(QtGui.QTableWidget):
+    """As high as its rows, which wrap where it is narrow."""
+
+    def resizeEvent(self, event: QtEvent) -> None:
+        super().resizeEvent(event)
+        _fit(self)
 
 
 def _fit(table: Table) -> None:

@@ -18,6 +18,7 @@ from ..common.figures import figure
 from ..common.kinds import Context, Numbers
 from ..common.messages import error_text
 from ..common.runner import Background
+from ..common.task_progress import TaskRow
 from ..widgets.form import FrameField
 from ..widgets.steady import steady
 
@@ -124,7 +125,13 @@ class RobotBox(RobotForm):
         self.list.setObjectName("reachEvents")
         self.list.setMaximumHeight(LIST_HEIGHT)
         self.list.currentRowChanged.connect(self._chosen)
-        for widget in (self.joints, self.check, self.list):
+        self.progress = TaskRow()
+        checking = QtGui.QWidget()  # a hidden row of its own would leave a gap
+        column = QtGui.QVBoxLayout(checking)
+        column.setContentsMargins(0, 0, 0, 0)
+        for widget in (self.check, self.progress):
+            column.addWidget(widget)
+        for widget in (self.joints, checking, self.list):
             self.rows.addRow(widget)
             self.fields.append(widget)
         self._arrange()
@@ -175,9 +182,11 @@ class RobotBox(RobotForm):
                 return arm_check.follow(path, robot, job, context)
 
         self.task = Background(work, self._done, self)
+        self.progress.follow(self.task, translate("BeltGrinding", "Checking the program"))
 
     def _done(self, result: Any, error: BaseException | None) -> None:
         self.task = None
+        self.progress.end()
         self.check.setEnabled(True)
         if isinstance(error, Cancelled):
             return
@@ -225,4 +234,5 @@ class RobotBox(RobotForm):
         """The panel goes: a check under way is given up."""
         if self.task is not None:
             self.task.abandon()
+            self.progress.end()
             self.task = None

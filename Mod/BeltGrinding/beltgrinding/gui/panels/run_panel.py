@@ -14,10 +14,12 @@ from ...base.kinds import known
 from ...engine import Cancelled, InputError
 from ...objects.kinds import DocumentObject
 from ..common.compat import QtGui, buttons, translate
+from ..common.help_pages import helped
 from ..common.icons import qicon
 from ..common.kinds import Buttons, Widget
 from ..common.messages import error_text
 from ..common.status_progress import StatusProgress, painted_once
+from ..common.task_progress import told
 from ..common.theme import warning_style
 from ..common.time_left import TimeLeft, duration
 from ..common.transaction import abort
@@ -38,6 +40,7 @@ class RunPanel:
         self.form = QtGui.QWidget()
         self.form.setWindowTitle(title)
         self.form.setWindowIcon(qicon(icon_name))
+        helped(self.form, icon_name)
         self.form.destroyed.connect(self._gone)  # a macro or another command may close it, too
         self.state = QtGui.QLabel()
         self.state.setObjectName("state")
@@ -98,10 +101,7 @@ class RunPanel:
 
     def progress(self, share: float) -> None:
         seconds = time.monotonic() - known(self.runner).start
-        text = self.doing().format(duration(seconds))
-        left = self.left.update(seconds, share)
-        if left is not None:
-            text += translate("BeltGrinding", "; about {} left").format(duration(left))
+        text = told(self.doing().format(duration(seconds)), self.left.update(seconds, share))
         with painted_once(self.form):
             self.bar.setValue(int(1000 * share))
             self._say(text)

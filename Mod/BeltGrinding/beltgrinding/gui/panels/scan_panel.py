@@ -8,7 +8,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from ...calibration import learning
-from ...engine import InputError
+from ...engine import Cancelled, InputError
 from ...objects import deviation, ground_mesh, part_scan, shown, simulation
 from ...objects.job_data import child, children
 from ...objects.kinds import DocumentObject
@@ -18,7 +18,9 @@ from ..common.figures import figure, length_text
 from ..common.kinds import Context, Json, Layout, Widget
 from ..common.messages import error_text
 from ..common.runner import Background
+from ..common.task_progress import TaskRow
 from .panel import Panel
+from ..widgets.figure_table import FigureTable
 from ..widgets.steady import steady
 
 UNITS = (("mm", 1.0), ("m", 1000.0), ("cm", 10.0), ("in", 25.4), ("ft", 304.8), ("µm", 0.001))
@@ -73,13 +75,9 @@ class ScanPanel(Panel):
         )
         self.correct.clicked.connect(self.learn)
         self.body.addWidget(self.correct)
-        self.table = QtGui.QTableWidget(0, 2)
-        self.table.setObjectName("figures")
-        self.table.horizontalHeader().hide()
-        self.table.verticalHeader().hide()
-        self.table.horizontalHeader().setSectionResizeMode(1, QtGui.QHeaderView.Stretch)
-        self.table.setEditTriggers(QtGui.QAbstractItemView.NoEditTriggers)
-        self.table.setMinimumHeight(TABLE_HEIGHT)
+        self.progress = TaskRow()
+        self.body.addWidget(self.progress)
+        self.table = FigureTable("figures", TABLE_HEIGHT)
         self.body.addWidget(self.table, 1)
         self.finish()
         self._enable()
@@ -181,16 +179,17 @@ class ScanPanel(Panel):
         except InputError as error:
             self.tell(error_text(error), True)
             return
-        self._busy(translate("BeltGrinding", "Aligning and measuring..."))
         work = SimpleNamespace(result=result)
 
         def run(context: Context) -> tuple[Any, Any]:
             return work.result, scan.compare(work.result, path, context=context, **options)
 
-        self.work = Background(run, self._done)
+        self._busy(Background(run, self._done), translate("BeltGrinding", "Aligning and measuring"))
 
     def _done(self, found: Any, error: BaseException | None) -> None:
         self._free()
+        if isinstance(error, Cancelled):
+            return
         if error is not None:
             self.tell(error_text(error), True)
             return
@@ -216,13 +215,15 @@ class ScanPanel(Panel):
         except InputError as error:
             self.tell(error_text(error), True)
             return
-        self._busy(translate("BeltGrinding", "Learning from the scan..."))
-        self.work = Background(
-            lambda context: learning.learn(data, measured, context=context), self._learned
+        work = lambda context: learning.learn(data, measured, context=context)
+        self._busy(
+            Background(work, self._learned), translate("BeltGrinding", "Learning from the scan")
         )
 
     def _learned(self, found: Any, error: BaseException | None) -> None:
         self._free()
+        if isinstance(error, Cancelled):
+            return
         if error is not None:
             self.tell(error_text(error), True)
             return
@@ -252,13 +253,16 @@ class ScanPanel(Panel):
         there = bool(getattr(self.obj, "ScanFigures", "")) and not self.obj.OutOfDate
         self.correct.setEnabled(there)
 
-    def _busy(self, text: str) -> None:
+    def _busy(self, work: Background, text: str) -> None:
+        self.work = work
         for button in (self.button, self.correct):
             button.setEnabled(False)
-        self.tell(text)
+        self.tell("")
+        self.progress.follow(work, text)
 
     def _free(self) -> None:
         self.work = None
+        self.progress.end()
         self.button.setEnabled(True)
         self._may_learn()
 
@@ -292,12 +296,7 @@ class ScanPanel(Panel):
                     f"{figure(100 * alignment['used_share'], '.1f')} %",
                 ),
             ]
-        self.table.setRowCount(len(rows))
-        for i, (name, text) in enumerate(rows):
-            self.table.setItem(i, 0, QtGui.QTableWidgetItem(name))
-            self.table.setItem(i, 1, QtGui.QTableWidgetItem(text))
-        self.table.resizeColumnsToContents()
-        self.table.resizeRowsToContents()
+        self.table.show_rows(rows)
 
     def check(self) -> None:
         if self.work is not None:

@@ -13,6 +13,7 @@ from ...objects import api, job_data, report_data
 from ...objects.deviation import Deviation
 from ...objects.job_data import child
 from ...objects.kinds import DocumentObject, Event
+from ...objects.living import GONE
 from ...objects.robot_path import RobotPath
 from ...objects.simulation import Simulation, is_coarse
 from ...objects.verdict import limits_changed
@@ -45,7 +46,7 @@ class _Follower:
             return
         try:
             ours = name in LIMITS if obj is self.job else obj is child(self.job, Simulation)
-        except (ReferenceError, RuntimeError):  # the job is gone
+        except GONE:  # the job is
             ours = False
         if ours:
             self.due = True
@@ -170,8 +171,8 @@ class SimulationPanel(RunPanel):
             return
         try:
             self.show(child(self.job, Simulation))
-        except (ReferenceError, RuntimeError):
-            self.follower.end()  # the job is gone
+        except GONE:
+            self.follower.end()  # the job is
 
     def show_moment(self, event: Event) -> None:
         """Shows a chosen event in the 3D view."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ...engine import InputError
+from ...engine import Cancelled, InputError
 from ...objects import stock_scan
 from ...objects.geometry import placement_from_job
 from ...objects.kinds import DocumentObject
@@ -13,6 +13,7 @@ from ..common.compat import QtGui, translate
 from ..common.figures import length_text
 from ..common.messages import error_text
 from ..common.runner import Background
+from ..common.task_progress import TaskRow
 from ..widgets.form import Form
 from ..widgets.steady import steady
 from .panel import Panel
@@ -68,6 +69,8 @@ class StockPanel(Panel):
         self.lay.setObjectName("layScan")
         self.lay.clicked.connect(self.align)
         rows.addRow(self.lay)
+        self.progress = TaskRow()
+        rows.addRow(self.progress)
         self.body.addWidget(self.scan)
         self.finish()
         self.arrange()
@@ -84,15 +87,19 @@ class StockPanel(Panel):
             self.tell(error_text(error), True)
             return
         self.lay.setEnabled(False)
-        self.tell(translate("BeltGrinding", "Laying the scan on the design..."))
+        self.tell("")
         file, unit = stock.File, stock.FileUnit
         self.work = Background(
             lambda context: stock_scan.align(data, file, unit, context, **options), self._laid
         )
+        self.progress.follow(self.work, translate("BeltGrinding", "Laying the scan on the design"))
 
     def _laid(self, found: Any, error: BaseException | None) -> None:
         self.work = None
+        self.progress.end()
         self.lay.setEnabled(True)
+        if isinstance(error, Cancelled):
+            return
         if error is not None:
             self.tell(error_text(error), True)
             return

@@ -9,10 +9,11 @@ from typing import Any
 import FreeCADGui as Gui
 
 from ...engine import InputError
-from ...objects import job_data
+from ...objects import job_data, preferences
 from ...objects.kinds import DocumentObject
 from ..common import gates
 from ..common.compat import QtCore, QtGui, translate
+from ..common.figures import length_text
 from ..common.kinds import Json, Layout, Table, Widget
 from ..common.messages import error_text
 from ..scene.face_tint import FaceTint
@@ -26,6 +27,9 @@ NAME, FACES, LOWER, UPPER, EDGE, THIN, THICK, RA, LAY = range(COLUMNS)
 IN_TABLE = (NAME, FACES, LOWER, UPPER)
 FIELDS = {EDGE: "zoneEdge", THIN: "zoneThin", THICK: "zoneThick", RA: "zoneRa", LAY: "zoneLay"}
 LIMITS = ((LOWER, UPPER, "tolerance_mm"), (THIN, THICK, "thickness_mm"))
+LIMIT_COLUMNS = (LOWER, UPPER, THIN, THICK)
+SYMBOLS = (*((unit.symbol, unit.size) for unit in preferences.UNITS), ("um", 1e-3))  # may be typed
+DIGITS = 12  # of a length in mm, so that 30 µm are 0.03
 HEIGHT = 140  # pixels
 ACCEPTANCES = ("Tmax", "T16%")
 LAYS = {"=": "lay_direction", "⊥": "lay_direction", "C": "lay_centre_mm", "R": "lay_centre_mm"}
@@ -38,12 +42,13 @@ class ZonesPanel(Panel):
 
     def __init__(self, obj: DocumentObject) -> None:
         super().__init__(obj, translate("BeltGrinding", "Tolerance zones"), "BeltGrinding_Zones")
+        self.unit = preferences.deviation_unit()
         text = translate(
             "BeltGrinding",
             "Each zone has limits of its own; where several hold a place, the last one counts. "
             "Without faces a zone holds all; with an edge radius only convex edges with a smaller "
-            "radius. Lengths in mm; what is left empty is not inspected.",
-        )
+            "radius. Limits in {}, edge radii in mm; what is left empty is not inspected.",
+        ).format(self.unit.symbol)
         label = QtGui.QLabel(text)
         label.setWordWrap(True)
         self.body.addWidget(label)
@@ -174,7 +179,7 @@ class ZonesPanel(Panel):
                 texts[EDGE] = shown(zone["edge_radius_mm"])
             for low, high, key in LIMITS:
                 if key in zone:
-                    texts[low], texts[high] = (shown(value) for value in zone[key])
+                    texts[low], texts[high] = map(self._limit, zone[key])
             finish = zone.get("finish", {})
             texts[RA], texts[LAY] = _ra_text(finish), _lay_text(finish)
             for k, text in enumerate(texts):
@@ -187,6 +192,10 @@ class ZonesPanel(Panel):
         if zones:
             self.table.setCurrentCell(min(row, len(zones) - 1), NAME)
         self.quiet = False
+
+    def _limit(self, value: float) -> str:
+        """A limit, mm, in the unit of deviations."""
+        return shown(round(value / self.unit.size, DIGITS))
 
     def text(self, row: int, column: int) -> str:
         item = self.table.item(row, column)
@@ -260,8 +269,13 @@ class ZonesPanel(Panel):
 
     def _number(self, row: int, column: int, text: str | None = None) -> float:
         text = (self.text(row, column) if text is None else text).replace(",", ".")
+        bare, size = text, self.unit.size if column in LIMIT_COLUMNS else 1.0
+        for symbol, mm in SYMBOLS:
+            if text.endswith(symbol) and column not in (RA, LAY):
+                bare, size = text.removesuffix(symbol), mm
+                break
         try:
-            value = float(text[:-2] if text.endswith("mm") else text)
+            value = round(float(bare) * size, DIGITS)
         except ValueError:
             value = math.nan
         if math.isfinite(value):
@@ -275,7 +289,7 @@ class ZonesPanel(Panel):
             )
         raise InputError(
             "gui.no_length",
-            "{zone}: '{text}' is no number of millimetres.",
+            "{zone}: '{text}' is no length.",
             zone=self.text(row, NAME),
             text=text,
         )
@@ -297,10 +311,10 @@ class ZonesPanel(Panel):
         else:
             count = self.table.rowCount()
             self.tell(
-                translate("BeltGrinding", "Zones: {}. Elsewhere {} to {} mm.").format(
+                translate("BeltGrinding", "Zones: {}. Elsewhere {} to {}.").format(
                     count,
-                    f"{self.obj.ToleranceLower.Value:g}",
-                    f"{self.obj.ToleranceUpper.Value:g}",
+                    length_text(self.obj.ToleranceLower.Value),
+                    length_text(self.obj.ToleranceUpper.Value),
                 )
             )
         self.tint_row()
@@ -317,7 +331,7 @@ class ZonesPanel(Panel):
         limits = [self.obj.ToleranceLower.Value, self.obj.ToleranceUpper.Value]
         faces = self._selected()
         rows = self._rows()
-        rows.append([f"{base} {number}", " ".join(map(str, faces)), *(f"{v:g}" for v in limits)])
+        rows.append([f"{base} {number}", " ".join(map(str, faces)), *map(self._limit, limits)])
         self._set_rows(rows, len(rows) - 1)
 
     def remove(self) -> None:

@@ -10,6 +10,7 @@ import FreeCADGui as Gui
 from pivy import coin
 
 from ...objects.kinds import Point, Vector
+from ...objects.living import GONE
 from ..common.compat import QtCore
 from ..common.kinds import View3D
 
@@ -84,7 +85,7 @@ def fly_to(view: View3D, point: Point, normal: Point, size: float, up: Point = (
         share = min(clock.elapsed() / FLIGHT, 1.0)
         try:
             put(share * share * (3.0 - 2.0 * share))
-        except RuntimeError:
+        except GONE:
             share = 1.0  # the view is closed
         if share >= 1.0:
             timer.stop()

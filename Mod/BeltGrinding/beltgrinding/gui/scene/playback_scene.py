@@ -14,6 +14,7 @@ from ...objects.belt_machine import BeltMachine
 from ...objects.deviation import Deviation
 from ...objects.ground_mesh import GroundMesh
 from ...objects.kinds import DocumentObject, ViewObject
+from ...objects.living import GONE
 from ...objects.plan import Plan
 from ...objects.robot_path import RobotPath
 from ...objects.shown import bands_of
@@ -130,11 +131,11 @@ class Scene:
                 switch.whichChild = child
                 if child < 0 and switch == view.SwitchNode:  # shown while it was turned off here
                     view.DisplayMode = view.DisplayMode
-            except (NameError, ReferenceError, RuntimeError):
+            except GONE:
                 pass  # the object is gone
         for one in self.covered:
             try:
                 one.ViewObject.Proxy.cover(False)
-            except (AttributeError, NameError, ReferenceError, RuntimeError):
+            except (AttributeError, *GONE):
                 pass  # the object is gone
         self.hidden, self.covered = [], []

@@ -12,6 +12,7 @@ from pivy import coin
 from ...engine import InputError
 from ...objects import preferences, readout as readings
 from ...objects.kinds import DocumentObject, Field
+from ...objects.living import GONE
 from ..common.compat import QtCore, QtGui, translate
 from ..common.figures import figure, length_text
 from ..common.kinds import Json, Node, View3D
@@ -69,7 +70,7 @@ class Probe(QtGui.QGroupBox):
             try:
                 view.removeEventCallback("SoMouseButtonEvent", call)
                 view.getSceneGraph().removeChild(self.dot)
-            except RuntimeError:
+            except GONE:
                 pass  # the view is closed
         self.listening = []
         self.field = self.picked = None

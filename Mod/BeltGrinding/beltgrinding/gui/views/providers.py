@@ -86,6 +86,10 @@ class JobView(View):
         "BeltGrinding_ImportResult",
     )
 
+    def canDelete(self, obj: DocumentObject) -> bool:
+        """Whether FreeCAD may delete one that the job is linked to unasked: not a part that is to be ground."""
+        return all(obj is not part for part, _ in self.view.Object.DesignFaces)
+
     def panel(self, obj: DocumentObject) -> Any:
         from ..panels.job_panel import JobPanel
 

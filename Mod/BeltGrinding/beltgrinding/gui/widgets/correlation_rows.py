@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from ...engine import InputError
+from ..common import field_words
 from ..common.compat import QtGui, translate
 from ..common.kinds import Json
 from .rows import Row, Rows, choose, number, shown
@@ -77,7 +78,7 @@ class _Pair(Row):
 
     def offer(self, names: Sequence[str]) -> None:
         """The names that may be chosen."""
-        self.offered = {name: name for name in names}
+        self.offered = {name: field_words.label(name) or name for name in names}
         for box in (self.first, self.second):
             choose(box, self.offered, box.currentData())
 

@@ -12,6 +12,7 @@ from ...geometry.body_names import PART, STOCK
 from ...objects import job_data, job_inputs
 from ...objects.belt_machine import BeltMachine, half_size
 from ...objects.kinds import DocumentObject, Event, Point
+from ...objects.living import named
 from ...objects.robot_path import RobotPath
 from ..common import event_texts
 from ..common.compat import QtGui
@@ -40,10 +41,7 @@ class EventMoment:
 
     def job(self) -> DocumentObject | None:
         """The job, or None if it or its document is no longer there."""
-        try:
-            return self.document.getObject(self.name)
-        except ReferenceError:
-            return None
+        return named(self.document, self.name)
 
     def show(self, event: Event) -> None:
         """Shows the moment at which an event was worst. Raises InputError if the job has changed so

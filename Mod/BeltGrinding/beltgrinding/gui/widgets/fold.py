@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ..common.compat import QtCore, QtGui
-from ..common.kinds import Layout, Widget
+from ..common.kinds import Layout, QtEvent, Widget
 
 
+ARROW = 28  # pixels of a title's arrow and its frame
 NARROW = (4, 9, 4, 4)  # pixels; FreeCAD's panels have margins of their own
 
 
@@ -52,5 +53,19 @@ class Fold(QtGui.QWidget):
         self.content.setVisible(not folded)
         self.head.setArrowType(QtCore.Qt.RightArrow if folded else QtCore.Qt.DownArrow)
         told = self.summary() if folded else ""
-        self.head.setText(f"{self.title}: {told}" if told else self.title)
-        self.head.setToolTip(self.head.text())
+        self.told = f"{self.title}: {told}" if told else self.title
+        self.head.setToolTip(self.told)
+        self._write()
+
+    def resizeEvent(self, event: QtEvent) -> None:
+        super().resizeEvent(event)
+        self._write()
+
+    def _write(self) -> None:
+        """The title, and what it tells on a line of its own where one is too narrow for both."""
+        text = self.told
+        self.head.ensurePolished()  # or its letters are not bold yet
+        if self.head.fontMetrics().horizontalAdvance(text) + ARROW > self.width():
+            text = text.replace(": ", ":\n", 1)
+        if text != self.head.text():
+            self.head.setText(text)

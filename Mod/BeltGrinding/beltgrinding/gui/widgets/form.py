@@ -92,6 +92,12 @@ def number(text: str) -> float | None:
     return value if math.isfinite(value) else None
 
 
+def _no_number(text: str) -> str:
+    if not text:
+        return translate("BeltGrinding", "Enter a number.")
+    return translate("BeltGrinding", "This is no number: {}").format(text)
+
+
 SIGNED = "signed"
 
 
@@ -166,7 +172,7 @@ class Form(QtGui.QGroupBox):
         if unit is None:
             value = number(text)
             if value is None:
-                return translate("BeltGrinding", "This is no number: {}").format(text or "''")
+                return _no_number(text)
             return self._out_of_limits(name, value)
         if text.startswith("="):
             return ""  # an expression, which FreeCAD checks itself
@@ -179,7 +185,7 @@ class Form(QtGui.QGroupBox):
         try:
             quantity = Units.Quantity(text)
         except Exception:  # the kind differs between FreeCAD's generations
-            return translate("BeltGrinding", "This is no number: {}").format(text or "''")
+            return _no_number(text)
         if quantity.Unit == unit:
             return self._out_of_limits(name, quantity.Value)
         if quantity.Unit != Units.Unit():

@@ -11,6 +11,7 @@ import numpy as np
 
 from ...base.frames import to_abc
 from ...objects.kinds import Document, DocumentObject
+from ...objects.living import GONE
 from ..common.compat import QtCore, QtGui, translate
 from ..common.kinds import Array, Json, ModelIndex, View3D
 from ..scene.cell_view import CellView
@@ -122,7 +123,7 @@ class PoseWalk(QtGui.QWidget):
         for view, call in self.picking:
             try:
                 view.removeEventCallback("SoMouseButtonEvent", call)
-            except RuntimeError:
+            except GONE:
                 pass  # the view is closed
         self.picking = []
         self.view.close()

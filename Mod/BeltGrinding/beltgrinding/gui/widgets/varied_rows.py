@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from ...engine import InputError
+from ..common import field_words
 from ..common.compat import QtGui, translate
 from ..common.kinds import Json, Texts, Widget
 from .steady import steady
@@ -91,8 +92,10 @@ class _Row(QtGui.QFrame):
         body.setContentsMargins(0, 0, 0, 0)
         body.setSpacing(2)
         name = entry.get("name")
-        key = QtGui.QLabel(entry["key"] if name is None else f"{name} ({entry['key']})")
-        key.setToolTip(about)
+        told = field_words.label(entry["key"]) or entry["key"]
+        key = QtGui.QLabel(told if name is None else f"{name} ({told})")
+        key.setToolTip(f"{about} ({entry['key']})" if about != entry["key"] else about)
+        key.setWordWrap(True)
         key.setSizePolicy(QtGui.QSizePolicy.Ignored, QtGui.QSizePolicy.Preferred)
         self.away = QtGui.QToolButton()
         self.away.setText("×")

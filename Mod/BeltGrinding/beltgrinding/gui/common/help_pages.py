@@ -1,0 +1,45 @@
+"""Which page of the manual tells of a panel or a dock: F1 there opens it."""
+
+from __future__ import annotations
+
+from .kinds import Widget
+
+PROPERTY = "beltGrindingPage"  # of a panel's form, or a dock
+PAGES = {  # name of the command whose icon it bears: page of docs/
+    "Belt": "workbench-machine.md",
+    "BeltMachine": "workbench-machine.md",
+    "BeltPlan": "belt-plan.md",
+    "Calibrate": "calibration.md",
+    "Cell": "workbench-cell.md",
+    "CheckSettings": "convergence.md",
+    "Contact": "contact.md",
+    "Deviation": "workbench-results.md",
+    "ImportProgram": "workbench-programs.md",
+    "Job": "workbench-job.md",
+    "Plan": "planning.md",
+    "Playback": "workbench-run.md",
+    "RasterPath": "raster.md",
+    "RobotPath": "workbench-programs.md",
+    "Scan": "scan.md",
+    "Section": "section.md",
+    "Simulate": "workbench-run.md",
+    "Stock": "workbench-job.md",
+    "Study": "study.md",
+    "Verdict": "verification.md",
+    "Zones": "verification.md",
+}
+
+
+def helped(widget: Widget, icon_name: str) -> None:
+    """Gives a panel's form, or a dock, its page."""
+    widget.setProperty(PROPERTY, PAGES[icon_name.partition("_")[2]])
+
+
+def page_of(widget: Widget) -> str:
+    """The page of what a widget is part of; '' if it has none."""
+    while widget is not None:
+        page = widget.property(PROPERTY)
+        if page:
+            return str(page)
+        widget = widget.parentWidget()
+    return ""

@@ -213,6 +213,28 @@ def test_moves_answer_to_what_stays_out():
     assert told["force"]["force_N"] == 7.5 and told["force"]["belt_angle_deg"] == 90.0
 
 
+def test_less_force_at_borders_is_tried_where_the_program_sets_forces():
+    own = job_of(plate())["belt_machine"]
+    device = {**own, "force_device": {**own["force_device"], "kind": "analog"}}
+
+    def told(one):
+        return {move[0]: (share, move[2]) for share, move in by_rules.others(one)}
+
+    left = {"border": 0.05, "shared": 0.02}
+    share, wanted = told(tried(device, left))["border_force"]
+    assert share > told(tried(device, left))["run_out"][0]
+    assert wanted["border_force_share"] == by_rules.BORDER_FORCE
+    assert wanted["step_over_mm"] == pytest.approx(by_rules.CLOSER * 3.0)
+    for one in (
+        tried(own, left),  # one force, set by hand
+        tried(device, {"shared": 0.2}),
+        tried(device, left, entry="direct"),
+        tried(device, left, border_force_share=0.3),
+        tried({**device, "control": "position"}, left),
+    ):
+        assert "border_force" not in told(one)
+
+
 def test_turns_are_about_the_mean_normal():
     about = np.array([0.0, 0.0, 1.0])
     assert moves.turned([2.0, 0.0, 1.0], about, 90.0) == [0.0, 1.0, 0.0]

@@ -23,7 +23,7 @@ from ..raster import raster_path
 from ..simulation import convergence, run as runs
 from . import reasons, rounds
 
-TRIES = 6  # passes, at most
+TRIES = 7  # passes, at most
 GAIN = 0.003  # of the area, for other passes to be better
 MATTERS = 0.01  # of the area: a reason for less is let be
 CLOSER = 0.7  # step-over against the one before
@@ -32,6 +32,7 @@ MOST_POSES = 20_000
 SMOOTHER = 2.0  # times the length over which the wheel turns, where the robot is slow to turn it and cuts too deep
 MOST_SMOOTHING = 4.0  # of the contact's length
 MOST_REPEATS = 20
+BORDER_FORCE = 0.15  # of the force, at borders
 MOST_OF = 0.9  # of the area that is not done at the least feed: the repeats are for it
 
 # mm (poses,) of the zones of a program as its file will have them; -1: the job's default.
@@ -84,6 +85,7 @@ class Tried(NamedTuple):
             "repeats": self.wanted["repeats"],
             "run_out_mm": self.wanted["run_out_mm"],
             "smoothing_mm": self.wanted["smoothing_mm"],
+            "border_force_share": self.wanted["border_force_share"],
             "poses": self.poses,
             "process_time_s": self.process_time_s,
             "in_tolerance": self.in_tolerance,
@@ -126,6 +128,8 @@ def lay(
 ) -> dict[str, Any]:
     """As ``raster_path.raster``; with the zones that the program's file will have, and one force where the plan's settings let
     none change."""
+    if one_force(settings):  # the feed alone would fall at borders
+        wanted = {**wanted, "border_force_share": 0.0}
     laid = raster_path.raster(data, wanted, context)
     if one_force(settings):
         laid["forces"] = np.full(
@@ -288,10 +292,21 @@ def others(one: Tried) -> list[tuple[float, Move]]:
         for run_out in (0.25 * one.length_mm, -0.25 * one.length_mm):
             farther = round(wanted["run_out_mm"] + run_out, 3)
             add(0.9 * shares["border"], "run_out", run_out_mm=farther)
+        if _spares_borders(one) and one.poses / CLOSER <= MOST_POSES:
+            # The contact is narrower there, too.
+            gentle = {"border_force_share": BORDER_FORCE, "step_over_mm": closer}
+            add(shares["border"] + shares["shared"] + shares["fringe"], "border_force", **gentle)
     if one.below > MATTERS and wanted["smoothing_mm"] < MOST_SMOOTHING * one.length_mm:
         smoother = max(SMOOTHER * wanted["smoothing_mm"], one.length_mm)
         add(one.below, "smoothing", smoothing_mm=round(smoother, 3))
     return found
+
+
+def _spares_borders(one: Tried) -> bool:
+    """Whether less force at borders is still to be tried: the program sets forces, and they grow along the passes."""
+    if one.wanted["border_force_share"] or one.wanted["entry"] == "direct":
+        return False
+    return one.machine["control"] == "force" and one.machine["force_device"]["kind"] != "none"
 
 
 def _repeats(plan: rounds.Plan, now: int) -> tuple[float, int]:

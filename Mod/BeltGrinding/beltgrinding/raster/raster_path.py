@@ -210,7 +210,7 @@ def _laid(
     clearing = Clearing(job, shape, settings, warnings, context, advance)
     kept = None
     if settings["keep_edge_mm"] > 0.0:
-        sizes = [(length, seen["width_mm"]), usual]
+        sizes: list[tuple[float | None, float | None]] = [(length, seen["width_mm"]), usual]
         sizes += [] if belt else [plane_extents(job, given, settings)]
         kept = edges.Kept(shape, faces, spacing, sizes, settings, clearing)
         levels = kept.spared(levels)

@@ -1,5 +1,8 @@
 """Playback where it is disturbed: closed, undone, deleted, cancelled; and what it shows besides."""
 
+import threading
+import time
+
 import numpy as np
 import pytest
 import FreeCAD
@@ -8,8 +11,10 @@ from PySide import QtGui
 from beltgrinding import core
 from beltgrinding.gui.charts import strip_chart
 from beltgrinding.gui.preferences_page import PreferencesPage
+from beltgrinding.objects import simulation as simulation_object
 from support.hands import field, menu, prepare, press, settle, visible, wait, widgets
 from support.playing import prepared, record
+from support.restoring import patch
 
 pytestmark = pytest.mark.freecad(window=True)
 
@@ -243,3 +248,21 @@ def test_it_stands_undo_and_a_deleted_result_while_it_plays():
     settle()
     docks = widgets(QtGui.QDockWidget, "BeltGrinding_PlaybackDock")
     assert not any(d.isVisible() or d.clock.isActive() or d.scene for d in docks)
+
+
+def test_a_recording_is_read_beside_the_windows_thread():
+    _, doc, _ = prepared()
+    dock = record()
+    dock.close()
+    threads = []
+    read = simulation_object.Simulation.recording
+
+    def slow(proxy, obj):
+        threads.append(threading.current_thread())
+        time.sleep(0.5)
+        return read(proxy, obj)
+
+    patch(simulation_object.Simulation, "recording", slow)
+    menu("Playback")
+    assert threads and threads[0] is not threading.main_thread()
+    assert field("BeltGrinding_PlaybackDock").scene is not None

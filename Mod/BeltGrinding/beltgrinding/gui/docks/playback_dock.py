@@ -5,13 +5,14 @@ from __future__ import annotations
 import time
 import traceback
 from collections.abc import Callable, Mapping
+from typing import Any
 
 import FreeCAD
 import FreeCADGui as Gui
 
 from ...base.kinds import known
 from ...engine import Cancelled, InputError, core
-from ...objects import job_data
+from ...objects import job_data, waiting
 from ...objects.kinds import Document, DocumentObject
 from ...objects.living import named
 from ...objects.simulation import KEEP, Simulation, lost_recording
@@ -64,7 +65,12 @@ class Playback(QtGui.QDockWidget):
             self.close()
             return
         simulation = job_data.child(job, Simulation)
-        found = simulation.Proxy.recording(simulation) if simulation is not None else None
+        try:
+            found = None if simulation is None else _read(simulation)
+        except Cancelled:
+            self.setWidget(self._offer(simulation))
+            self.state.setText(translate("BeltGrinding", "Cancelled."))
+            return
         if found is None:
             self.setWidget(self._offer(simulation))
             return
@@ -323,6 +329,12 @@ class Playback(QtGui.QDockWidget):
             self.runner = None
         self._clear()
         super().closeEvent(event)
+
+
+def _read(simulation: DocumentObject) -> Any:
+    """Its recording, as ``Simulation.recording``; reading a large one takes seconds. Raises Cancelled."""
+    text = translate("BeltGrinding", "Reading the recording")
+    return waiting.wait(lambda _: simulation.Proxy.recording(simulation), text)
 
 
 def _without_recording(simulation: DocumentObject | None) -> str:

@@ -10,10 +10,11 @@ import beltgrinding
 from beltgrinding.engine import InputError
 from beltgrinding.programs import read_program
 
-pytestmark = [pytest.mark.freecad, pytest.mark.slow]
+pytestmark = pytest.mark.freecad
 HOME = [60, -90, 90, 0, 60, 0]
 
 
+@pytest.mark.slow
 def test_it_is_planned_kept_and_written(tmp_path):
     doc = FreeCAD.newDocument("work")
     part = doc.addObject("Part::Feature", "Block")

@@ -188,7 +188,7 @@ class RobotProgramPanel(RunPanel):
             self.home.setStyleSheet(WRONG)
             return
         self.home.setStyleSheet("")
-        program = json.dumps({**self._program(), "home_joints_deg": angles})
+        program = json.dumps({**self._program(), "home_joints_deg": angles}, allow_nan=False)
         if json.loads(program) != self._program():
             self.machine.RobotProgram = program
             self._changed()

@@ -107,7 +107,7 @@ def fingerprint(job: DocumentObject) -> str:
     """Hash of all that a program depends on. Raises InputError."""
     controller = required(job, BeltMachine, "belt machine").Controller
     data = [job_inputs.fingerprint(job), controller]
-    return hashlib.sha256(json.dumps(data).encode()).hexdigest()
+    return hashlib.sha256(json.dumps(data, allow_nan=False).encode()).hexdigest()
 
 
 def find(data: Json, context: Context = None) -> Found:

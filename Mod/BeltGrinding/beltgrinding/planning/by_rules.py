@@ -13,9 +13,11 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from ..base.kinds import Floats, Json, known
+from ..base.records import made
 from ..engine import InputError, core
 from ..inspection import verdict as verdicts
 from ..job import poses
+from ..job.settings import BeltMachine
 from ..job.typed import typed
 from ..job.workpiece import read_design
 from ..programs.program import Program
@@ -306,7 +308,8 @@ def _spares_borders(one: Tried) -> bool:
     """Whether less force at borders is still to be tried: the program sets forces, and they grow along the passes."""
     if one.wanted["border_force_share"] or one.wanted["entry"] == "direct":
         return False
-    return one.machine["control"] == "force" and one.machine["force_device"]["kind"] != "none"
+    machine = made(BeltMachine, one.machine)
+    return machine.control == "force" and machine.force_device.kind != "none"
 
 
 def _repeats(plan: rounds.Plan, now: int) -> tuple[float, int]:

@@ -241,7 +241,7 @@ def _laid(
     if fill and not no_room and settings["where_it_collides"] != "warn" and _overlap(result):
 
         def levels_of(step_over: float) -> Levels:
-            found = _lines(sheets, settings, step_over, spacing, lever, [], context)
+            found: Levels = _lines(sheets, settings, step_over, spacing, lever, [], context)
             found = found if wanted is None else region.restricted(found, *wanted)
             return found if kept is None else kept.spared(found)
 

@@ -229,7 +229,7 @@ def test_a_path_is_exported_as_a_robot_program():
     # What the program takes for granted is said, and nothing is set to zero.
     (box,) = visible(QtGui.QMessageBox, "BeltGrinding_Note")
     assert (
-        "tBelt" in box.text() and "wPart" in box.text() and "ProgramBase" in box.text()
+        "tBelt" in box.text() and "wPart" in box.text() and "Program Base" in box.text()
     ), box.text()
     assert "PERS" not in Path("out.mod").read_text()
     told = [problem.arguments["reason"] for problem in program.problems]

@@ -1,5 +1,8 @@
 """F1 in a panel or a dock opens the page of the manual that tells of it."""
 
+import re
+from pathlib import Path
+
 import pytest
 from PySide import QtCore, QtGui
 
@@ -8,6 +11,13 @@ from beltgrinding.gui.common import help_pages
 from support.hands import field, menu, prepare, press, settle, widgets, window
 
 pytestmark = pytest.mark.freecad(window=True)
+
+
+def test_each_panel_has_a_page():
+    named = set()
+    for path in (Path(help_pages.__file__).parents[1] / "panels").glob("*.py"):
+        named |= set(re.findall(r'"BeltGrinding_(\w+)"', path.read_text(encoding="utf-8")))
+    assert len(named) > 15 and named - set(help_pages.PAGES) == set()
 
 
 def test_f1_opens_the_page_of_the_panel():

@@ -28,6 +28,12 @@ OF_A_BELT = "event.belt_"  # codes of facts on a belt that is pressed without a 
 NamedBody = Callable[[str], tuple[str, str, str] | None]
 _told: NamedBody = lambda name: None
 _words: Callable[[str], str] = lambda text: text
+# Facts that name a table's columns, or keys as they are typed.
+AS_WRITTEN = {
+    "calibration.no_wear_by_job",
+    "calibration.wear_by_job",
+    "studies.unknown_key",
+}
 BELT_TITLES = {"wheel_too_large": "Belt spans a hollow"}  # where the kind's code names the wheel
 
 
@@ -131,7 +137,8 @@ def _filled(code: str, text: str, arguments: Mapping[str, Any], language: str) -
 def sentence(told: Any, language: str) -> str:
     """What a fact, an error or a fact of an event (a dict) says. ``language``: "en" or "de". Of an
     error of another kind, what it says itself."""
-    return _words(_sentence(told, language))
+    said = _sentence(told, language)
+    return said if getattr(told, "code", "") in AS_WRITTEN else _words(said)
 
 
 def _sentence(told: Any, language: str) -> str:

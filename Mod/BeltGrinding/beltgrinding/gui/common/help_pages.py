@@ -20,6 +20,7 @@ PAGES = {  # name of the command whose icon it bears: page of docs/
     "Playback": "workbench-run.md",
     "RasterPath": "raster.md",
     "RobotPath": "workbench-programs.md",
+    "RobotProgram": "robot.md",
     "Scan": "scan.md",
     "Section": "section.md",
     "Simulate": "workbench-run.md",

@@ -155,6 +155,7 @@ def test_deleting_the_part_of_a_job_asks():
 
         Gui.Selection.clearSelection()
         Gui.Selection.addSelection(doc.Name, name)
+        settle()
         timer = QtCore.QTimer()
         timer.timeout.connect(look)
         timer.start(50)

@@ -74,18 +74,27 @@ def draw(found: Plan, context: Context = None) -> Pictures:
 
     def sides(field: core.HeightField, colours: Array) -> list[Array]:
         views = picture.Studio(field, colours, shape, context).both(context)
-        return [_small(view.pixels) for view in views]
+        return [view.pixels for view in views]
 
-    before, planned = (
-        sides(one, core.deviation_colours(one, *scale)) for one in (found.before.field, after)
-    )
-    return Pictures(before, planned, sides(after, colours))
+    drawn = [
+        sides(found.before.field, core.deviation_colours(found.before.field, *scale)),
+        sides(after, core.deviation_colours(after, *scale)),
+        sides(after, colours),
+    ]
+    return Pictures(*_small(drawn))
 
 
-def _small(pixels: Array) -> Array:
-    image = Image.fromarray(pixels)
-    rows = max(round(image.height * WIDTH / image.width), 1)
-    return np.asarray(image.resize((WIDTH, rows), Image.LANCZOS))
+def _small(drawn: list[list[Array]]) -> list[list[Array]]:
+    """The same ``WIDTH`` wide, each side of one height: stock on the part may make a picture a pixel higher."""
+    shapes = [side.shape for side in drawn[0]]
+    sizes = [(WIDTH, max(round(rows * WIDTH / columns), 1)) for rows, columns, _ in shapes]
+    return [
+        [
+            np.asarray(Image.fromarray(pixels).resize(size, Image.LANCZOS))
+            for pixels, size in zip(sides, sizes)
+        ]
+        for sides in drawn
+    ]
 
 
 def strip(pictures: Pictures) -> bytes:

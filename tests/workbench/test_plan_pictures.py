@@ -18,5 +18,5 @@ def test_sides_that_are_a_pixel_higher_lie_side_by_side():
     assert all(side.shape == shown.before[0].shape for sides in shown for side in sides)
     strip = Image.open(io.BytesIO(pictures.strip(shown)))
     assert strip.width == 3 * pictures.WIDTH
-    words = {"border": 0.1}
-    assert Image.open(io.BytesIO(pictures.composed(shown, words))).width >= strip.width
+    shares = {word: 0.1 for word in pictures.reasons.WORDS.values()}
+    assert Image.open(io.BytesIO(pictures.composed(shown, shares))).width >= strip.width

@@ -61,8 +61,12 @@ def hottest(job, feed, travel=1.0, material=None, spacing=1.0):
 def test_aluminium_at_any_feed_is_as_warm_as_it_is(aluminium):
     found = [hottest(aluminium, feed)[0] for feed in (1, 2, 5, 10, 50)]
     assert sorted(found, reverse=True) == found
-    assert found[2] < 101.0 and found[-1] > 30.0
-    assert found[3] == pytest.approx(69.0, abs=2.0)
+    assert found[-1] > 30.0
+    # Finite differences of the box, 0.5 mm, heated where the recording removes: 81.0 and 53.8 K. The step of
+    # 1 mm that the wheel tips over the edge by costs 4 %.
+    assert found[2] - 20.0 == pytest.approx(81.0, rel=0.03)
+    assert found[3] - 20.0 == pytest.approx(53.8, rel=0.05)
+    assert hottest(aluminium, 10, 0.25)[0] - 20.0 == pytest.approx(53.8, rel=0.03)
     # 104 W for 30 s are 158 K for all of the part.
     assert 150.0 < found[0] < 400.0
 

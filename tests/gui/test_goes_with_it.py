@@ -1,5 +1,6 @@
 """What belongs to a document, a part or a panel that goes, goes with it."""
 
+import contextlib
 import json
 from pathlib import Path
 
@@ -115,11 +116,11 @@ def test_a_job_is_copied_and_pasted():
     doc = job.Document
     Gui.Selection.clearSelection()
     Gui.Selection.addSelection(job)
-    patch_answers()
-    Gui.runCommand("Std_Copy")
-    settle()
-    Gui.runCommand("Std_Paste")
-    settle()
+    with what_depends_too():
+        Gui.runCommand("Std_Copy")
+        settle()
+        Gui.runCommand("Std_Paste")
+        settle()
     doc.recompute()
     settle()
     jobs = [obj for obj in doc.Objects if obj.Name.startswith("BeltGrindingJob")]
@@ -130,7 +131,8 @@ def test_a_job_is_copied_and_pasted():
     )
 
 
-def patch_answers():
+@contextlib.contextmanager
+def what_depends_too():
     """FreeCAD asks which of the objects it depends on are to be copied: all."""
 
     def answer():
@@ -138,8 +140,13 @@ def patch_answers():
             if dialog is not Gui.getMainWindow() and dialog.isModal():
                 dialog.accept()
 
-    for k in range(1, 20):
-        QtCore.QTimer.singleShot(200 * k, answer)
+    timer = QtCore.QTimer()
+    timer.timeout.connect(answer)
+    timer.start(200)
+    try:
+        yield
+    finally:
+        timer.stop()  # it would answer the next test's questions
 
 
 def test_deleting_the_part_of_a_job_asks():

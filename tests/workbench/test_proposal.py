@@ -84,7 +84,10 @@ def test_a_proposal_takes_the_allowance_off_and_beats_the_defaults(name, face):
     job["inspection"] = {"tolerance_mm": [-TOLERANCE, TOLERANCE]}
     found = proposal.propose(jobs.validate({**job, "programs": [{"poses": []}]}))
     # No wheel fits the whole of the crank arm's face: a boss stands on it.
-    assert {note.code for note in found["notes"]} <= {"raster.proposed_unfit"}
+    assert {note.code for note in found["notes"]} <= {
+        "raster.proposed_small",
+        "raster.proposed_unfit",
+    }
     machine = {
         "wheel": {"radius_mm": found["wheel_radius_mm"], "width_mm": found["wheel_width_mm"]},
         "compliance": {"rim_thickness_mm": found["rim_thickness_mm"]},
@@ -218,8 +221,25 @@ def test_a_belt_that_does_not_fit_is_told_with_one_that_does(parts):
     assert proposal.propose(largest(parts / "slot.brep", BELT, bottom))["notes"] == []
 
 
+def test_a_small_wheel_says_what_the_next_one_would_reach(parts):
+    def domed(shape, face):
+        return shape.surface_type(face) == "sphere"
+
+    wheel = {"kind": "contact_wheel"}
+    free = proposal.propose(largest(parts / "dome.brep", wheel, domed))
+    assert free["wheel_radius_mm"] == 31.5 and not free["notes"]
+    (note,) = proposal.propose(largest(parts / "rimmed.brep", wheel, domed))["notes"]
+    assert note.code == "raster.proposed_small", str(note)
+    told = note.arguments
+    assert told["radius"] < told["larger"] == 31.5 and told["less"] < told["reached"] < 98.0
+
+
 def make_parts(folder):
     V = FreeCAD.Vector
     Part.makeCylinder(30, 60, V(0, 0, 0), V(0, 1, 0), 120).exportBrep(str(folder / "third.brep"))
     slot = Part.makeBox(120, 30, 10, V(-60, -15, 0))
     Part.makeBox(120, 60, 20, V(-60, -30, -10)).cut(slot).exportBrep(str(folder / "slot.brep"))
+    ball, knob = Part.makeSphere(110, V(0, 0, -90)), Part.makeCylinder(40, 30)
+    dome, rim = ball.common(knob), Part.makeCylinder(44, 22).cut(knob)
+    dome.exportBrep(str(folder / "dome.brep"))
+    dome.fuse(rim).exportBrep(str(folder / "rimmed.brep"))

@@ -227,15 +227,28 @@ def _wheel(
         radius,
     )
     width = max((w for w in WIDTHS if w <= wide), default=WIDTHS[0])
-    found, share = _that_fits(job, shape, field, settings, radius, width, context)
-    if share > UNFIT:
+    found, tried = _that_fits(job, shape, field, settings, radius, width, context)
+    largest = max(tried)
+    if largest[0] > found[0]:
+        notes.append(
+            core.Fact(
+                "raster.proposed_small",
+                "the wheel has {radius:.3g} mm radius, since larger ones run into the part beside the faces: it fits on "
+                "{reached:.0f} % of the area, one of {larger:.3g} mm on {less:.0f} %",
+                radius=found[0],
+                reached=100.0 * (1.0 - tried[found]),
+                larger=largest[0],
+                less=100.0 * (1.0 - tried[largest]),
+            )
+        )
+    elif tried[found] > UNFIT:
         notes.append(
             core.Fact(
                 "raster.proposed_unfit",
                 "a wheel of {radius:.3g} mm radius, the best of those that are tried, still does not fit the part "
                 "on {share:.0f} % of the area",
                 radius=found[0],
-                share=100.0 * share,
+                share=100.0 * tried[found],
             )
         )
     return found
@@ -249,9 +262,9 @@ def _that_fits(
     radius: float,
     width: float,
     context: Context,
-) -> tuple[tuple[float, float], float]:
+) -> tuple[tuple[float, float], dict[tuple[float, float], float]]:
     """((radius, width) mm of the largest wheel, not above these, that fits the part nearly everywhere on the faces;
-    share of the area where it does not): the radius comes down first. Where none fits, the best one.
+    share of the area where each that was tried does not): the radius comes down first. Where none fits, the best one.
     """
     frames, areas = _standing(field, settings["direction"])
     clearing = Clearing(job, shape, validate({"max_tilt_deg": 0.0}), [], context)
@@ -266,15 +279,15 @@ def _that_fits(
         size = r, min(width, max((w for w in WIDTHS if w <= r), default=WIDTHS[0]))
         tried[size] = unfit(*size)
         if tried[size] <= UNFIT:
-            return size, tried[size]
+            return size, tried
     best = _largest(tried)
     for w in sorted((w for w in WIDTHS if w < best[1]), reverse=True):
         size = best[0], w
         tried[size] = unfit(*size)
         if tried[size] <= UNFIT:
-            return size, tried[size]
+            return size, tried
     best = _largest(tried)
-    return best, tried[best]
+    return best, tried
 
 
 def _largest(tried: Mapping[tuple[float, float], float]) -> tuple[float, float]:

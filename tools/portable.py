@@ -27,6 +27,7 @@ FREECADS = re.compile(r"lib(Coin|GL|GLX|OpenGL|GLU|EGL|X11|Xext|Xi)\.so.*")
 ABSENT = ("libcurl.so.4", "libcrypto.so.3")
 PURE = ("jsonschema", "attr", "attrs", "pyrsistent", "_pyrsistent_version.py")
 THREE = Path("/usr/share/javascript/three/three.min.js")
+REPORT = "docs/images/tap-report.html"
 MOST_MB = 60
 TRIAL = "import beltgrinding_core, beltgrinding_scan"
 WHEEL = """Wheel-Version: 1.0
@@ -253,10 +254,20 @@ def stage_portable(stage: Path, built: Path) -> tuple[list[Path], list[str]]:
         Image.open(picture).convert("RGB").quantize(256).save(
             picture, optimize=True
         )  # a third of the bytes
+    without_report(stage)
     package_xml = stage / "package.xml"
     text = package_xml.read_text()
     package_xml.write_text(re.sub(r"\s*<depend [^>]*>jsonschema</depend>", "", text))
     return [*binaries, *(stage / "libs").glob("*.so")], sorted(digits)
+
+
+def without_report(stage: Path) -> None:
+    """Leaves out the report that README.md shows to strangers, three megabytes, with what leads there."""
+    (stage / REPORT).unlink()
+    readme = stage / "README.md"
+    paragraphs = readme.read_text(encoding="utf-8").split("\n\n")
+    kept = [one for one in paragraphs if REPORT not in one]
+    readme.write_text("\n\n".join(kept), encoding="utf-8")
 
 
 def write_zip(stage: Path, path: Path) -> None:

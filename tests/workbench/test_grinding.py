@@ -60,12 +60,25 @@ def test_too_much_stock_for_the_least_feed_repeats_the_passes():
 
 
 @pytest.mark.slow
-def test_without_a_device_the_force_stays():
+def test_without_a_device_a_force_that_is_right_stays():
     found = grinding.grind(job_of(), PASSES, QUICK)
     assert set(found.plan.factors) == {1.0}
     assert set(found.laid["forces"]) == {-1.0}
     job = found.plan.job["programs"][0]["poses"]
     assert {one.get("force_N", 30.0) for one in job} <= {30.0}
+
+
+@pytest.mark.slow
+def test_a_force_that_cuts_too_deep_at_the_greatest_feed_comes_down():
+    limits = {**QUICK, "feed_max_mm_s": 25.0}
+    found = grinding.grind(job_of(0.1), {**PASSES, "max_tcp_feed_mm_s": 20.0}, limits)
+    force = found.plan.job["belt_machine"]["force_N"]
+    share = found.plan.after.summary["in_tolerance_area_share"]
+    assert force < 20.0 and {one["change"] for one in found.tried[:2]} == {"first", "force"}
+    assert share > found.tried[0]["in_tolerance"] + 0.5, (force, share)
+    assert set(found.laid["forces"]) == {-1.0}  # the program sets none
+    kept = grinding.grind(job_of(0.1), {**PASSES, "force_N": 30.0}, limits)
+    assert kept.plan.job["belt_machine"]["force_N"] == 30.0
 
 
 def test_forces_go_down_only_unless_asked():

@@ -183,7 +183,7 @@ def test_wheels_are_sizes_of_a_series_or_given():
     assert wheels.mounted(platen, found) == ()
 
 
-def tried(machine=None, shares=None, **wanted):
+def tried(machine=None, shares=None, gentler=(0.0, 1.0), **wanted):
     none = dict.fromkeys(
         ("slowest_feed", "shared", "fringe", "border", "no_room", "no_motion"), 0.0
     )
@@ -193,7 +193,7 @@ def tried(machine=None, shares=None, **wanted):
     feeds = np.ones(3), np.ones(3)
     return by_rules.Tried(
         *("first", machine, settings, 0.5, feeds, {**none, **(shares or {})}, 0.2),
-        *(6.0, 8.0, 3.0, 40, 10.0, 0.0, 1, up),
+        *(6.0, 8.0, 3.0, 40, 10.0, 0.0, 1, gentler, up),
     )
 
 
@@ -201,16 +201,13 @@ def test_moves_answer_to_what_stays_out():
     def names(one, fixed=()):
         return sorted(move[0] for _, move in moves.Moves(fixed)(one))
 
-    assert names(tried()) == ["force"]  # 20 % are cut too deep
-    position = {**job_of(plate())["belt_machine"], "control": "position"}
-    assert names(tried(position)) == []
+    assert names(tried()) == []
     hidden = tried(shares={"no_room": 0.3})
-    assert names(hidden) == ["belt_angle"] * 2 + ["direction"] * 2 + ["force"]
-    assert names(hidden, ("belt_angle_deg", "along", "force_N")) == []
+    assert names(hidden) == ["belt_angle"] * 2 + ["direction"] * 2
+    assert names(hidden, ("belt_angle_deg", "along")) == []
     leaned = tried(shares={"shared": 0.2}, belt_angle_deg=90.0)
     told = {move[0]: move[2] for _, move in moves.Moves()(leaned)}
     assert told["lean"]["max_tilt_deg"] == 5.0 and told["belt_angle"]["belt_angle_deg"] == 67.5
-    assert told["force"]["force_N"] == 7.5 and told["force"]["belt_angle_deg"] == 90.0
 
 
 def test_less_force_at_borders_is_tried_where_the_program_sets_forces():
@@ -233,6 +230,24 @@ def test_less_force_at_borders_is_tried_where_the_program_sets_forces():
         tried({**device, "control": "position"}, left),
     ):
         assert "border_force" not in told(one)
+
+
+def test_less_force_is_tried_where_it_is_set_by_hand():
+    own = job_of(plate())["belt_machine"]
+
+    def forces(one):
+        return [move[1]["force_N"] for _, move in by_rules.others(one) if move[0] == "force"]
+
+    assert forces(tried(own, gentler=(0.3, 0.2))) == [pytest.approx(0.2 * own["force_N"])]
+    assert forces(tried(own, gentler=(0.3, 0.001))) == [by_rules.FORCE_LEAST]
+    least = {**own, "force_N": by_rules.FORCE_LEAST}
+    for one in (
+        tried(own),
+        tried(least, gentler=(0.3, 0.5)),
+        tried({**own, "control": "position"}, gentler=(0.3, 0.2)),
+        tried(own, gentler=(0.3, 0.2), force_N=12.0),  # the user's own
+    ):
+        assert forces(one) == []
 
 
 def test_turns_are_about_the_mean_normal():

@@ -22,8 +22,10 @@ from ..job.typed import typed
 from ..job.workpiece import read_design
 from ..programs.program import Program
 from ..raster import raster_path
+from ..raster.proposal import FORCE_LEAST
 from ..simulation import convergence, run as runs
 from . import reasons, rounds
+from .step import force_exponent
 
 TRIES = 7  # passes, at most
 GAIN = 0.003  # of the area, for other passes to be better
@@ -35,6 +37,7 @@ SMOOTHER = 2.0  # times the length over which the wheel turns, where the robot i
 MOST_SMOOTHING = 4.0  # of the contact's length
 MOST_REPEATS = 20
 BORDER_FORCE = 0.15  # of the force, at borders
+LEAST_FORCE, FORCES = 0.02, 40  # of the force that is set by hand; so many are looked at
 MOST_OF = 0.9  # of the area that is not done at the least feed: the repeats are for it
 
 # mm (poses,) of the zones of a program as its file will have them; -1: the job's default.
@@ -70,6 +73,7 @@ class Tried(NamedTuple):
     process_time_s: float
     undone: float  # of the area, not done even at the least feed and the greatest force
     repeats: int  # that it wants
+    gentler: tuple[float, float]  # of the area, that less force set by hand may mend; of the force
     looks: Floats  # (3,) unit: the faces' mean normal, 0 of closed ones
 
     def row(self, better: bool) -> dict[str, Any]:
@@ -160,7 +164,7 @@ def attempt(
     job = _coarser(rounds.settled(with_path(data, laid), context), laid["area_mm2"], fidelity)
     quick = {"rounds": fidelity.rounds, "check": False, "levels": 0}
     plan = rounds.plan(job, {**settings, **quick}, context.part(0.2, 1.0))
-    return _seen(move[0], machine, wanted, laid, plan)
+    return _seen(move[0], machine, wanted, laid, plan, settings)
 
 
 def expected(job: Json, context: core.RunContext | None = None) -> float:
@@ -191,7 +195,9 @@ def _coarser(job: Json, area: float, fidelity: Fidelity) -> Json:
     return {**job, "sampling": {**job["sampling"], **wider}}
 
 
-def _seen(change: str, machine: Json, wanted: Json, laid: Json, plan: rounds.Plan) -> Tried:
+def _seen(
+    change: str, machine: Json, wanted: Json, laid: Json, plan: rounds.Plan, settings: Json
+) -> Tried:
     looks = -np.asarray(laid["contacts"])[:, :3, 2].mean(axis=0)
     size = float(np.linalg.norm(looks))
     best = max(plan.rounds, key=share)
@@ -212,6 +218,7 @@ def _seen(change: str, machine: Json, wanted: Json, laid: Json, plan: rounds.Pla
         process_time_s=best["process_time_s"],
         undone=undone,
         repeats=repeats,
+        gentler=_gentler(plan) if one_force(settings) else (0.0, 1.0),
         looks=looks / size if size > 0.1 else np.zeros(3),
     )
 
@@ -298,6 +305,13 @@ def others(one: Tried) -> list[tuple[float, Move]]:
             # The contact is narrower there, too.
             gentle = {"border_force_share": BORDER_FORCE, "step_over_mm": closer}
             add(shares["border"] + shares["shared"] + shares["fringe"], "border_force", **gentle)
+    gain, of_force = one.gentler
+    force = max(round(of_force * one.machine["force_N"], 1), FORCE_LEAST)
+    by_hand = one.machine["control"] == "force" and not wanted["force_N"]
+    if gain > MATTERS and by_hand and force < one.machine["force_N"]:
+        # As likely as all that is cut too deep: it is the one thing that helps where the robot is slow everywhere.
+        gentler = ("force", {**one.machine, "force_N": force}, wanted)
+        found.append((max(gain, one.below), gentler))
     if one.below > MATTERS and wanted["smoothing_mm"] < MOST_SMOOTHING * one.length_mm:
         smoother = max(SMOOTHER * wanted["smoothing_mm"], one.length_mm)
         add(one.below, "smoothing", smoothing_mm=round(smoother, 3))
@@ -312,17 +326,42 @@ def _spares_borders(one: Tried) -> bool:
     return machine.control == "force" and machine.force_device.kind != "none"
 
 
-def _repeats(plan: rounds.Plan, now: int) -> tuple[float, int]:
-    """(of the area, what is not done even at the least feed and the greatest force; how often the passes must be run through
-    so that most of it is)."""
-    field, influence = plan.after.field, known(plan.after.influence)
+def _gentler(plan: rounds.Plan) -> tuple[float, float]:
+    """(of the area, that is in tolerance besides; with this share of the force): what is cut too deep is taken to be ground
+    as fast as the robot can, the rest to be ground as slowly as it may."""
+    field, alpha, most = plan.after.field, force_exponent(plan.after.job), _most(plan)
+    lower, upper = verdicts.limits(plan.after.job, field)
+    stock, height = (np.asarray(a, dtype=float) for a in (field.stock_height, field.height))
+    areas = np.asarray(field.areas, dtype=float)
+    deep = np.where(height < lower, stock - height, 0.0)
+
+    def within(factor: float) -> float:
+        less = factor**alpha
+        inside = (deep * less <= stock - lower) & (most * less >= stock - upper)
+        return float(areas[inside].sum() / areas.sum())
+
+    tried = np.geomspace(LEAST_FORCE, 1.0, FORCES)
+    shares = np.array([within(one) for one in tried])
+    best = int(np.flatnonzero(shares >= shares.max() - GAIN)[-1])  # less force takes longer
+    return shares[best] - shares[-1], float(tried[best])
+
+
+def _most(plan: rounds.Plan) -> Floats:
+    """(samples,) mm that is removed at the least feed and the greatest force."""
+    influence = known(plan.after.influence)
     slowest, _ = plan.commands.feed_range
     _, strongest = plan.commands.force_range
     more = (plan.new / slowest) * (strongest / plan.factors)  # of each command, than it removes now
     more[plan.commands.kept] = 1.0
     motions = np.repeat(np.arange(len(influence)), np.diff(influence.first).astype(int))
     depth = influence.depth * more[plan.commands.group][motions]
-    most = np.bincount(influence.sample.astype(int), depth, len(field.height))
+    return np.bincount(influence.sample.astype(int), depth, len(plan.after.field.height))
+
+
+def _repeats(plan: rounds.Plan, now: int) -> tuple[float, int]:
+    """(of the area, what is not done even at the least feed and the greatest force; how often the passes must be run through
+    so that most of it is)."""
+    field, most = plan.after.field, _most(plan)
     lower, upper = verdicts.limits(plan.after.job, field)
     needed = np.asarray(field.stock_height, dtype=float) - upper
     areas = np.asarray(field.areas, dtype=float)

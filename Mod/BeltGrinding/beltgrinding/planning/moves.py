@@ -1,4 +1,4 @@
-"""What a search tries besides the rules: other directions, belt angles, leans, forces and narrower wheels."""
+"""What a search tries besides the rules: other directions, belt angles, leans and narrower wheels."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from .by_rules import MATTERS, Move, Tried
 
 TURN_DEG = 22.5  # from the best direction, and from the best belt angle
 HALF_TURN = 180.0  # degrees of the belt's angle: the belt's travel the other way round is the same to the part
-GENTLER = 0.5  # times the force
 LESS_LEAN = 1.0 / 3.0  # of the lean
 GUESS = 0.3  # of what stays out for other reasons: a turn may mend it
 
@@ -35,11 +34,6 @@ class Moves:
         if one.wanted["max_tilt_deg"] > 0.0 and shares["shared"] + shares["fringe"] > MATTERS:
             lean = round(LESS_LEAN * one.wanted["max_tilt_deg"], 1)
             found += self._changed(one, 0.1 * left, "lean", "max_tilt_deg", lean)
-        if one.below > MATTERS and one.machine["control"] == "force":
-            force = one.wanted["force_N"] or one.machine["force_N"]
-            value = round(GENTLER * force, 1)
-            if value > 0.0:
-                found += self._changed(one, 0.8 * one.below, "force", "force_N", value)
         return found
 
     def _changed(

@@ -355,7 +355,9 @@ def _most(plan: rounds.Plan) -> Floats:
     more[plan.commands.kept] = 1.0
     motions = np.repeat(np.arange(len(influence)), np.diff(influence.first).astype(int))
     depth = influence.depth * more[plan.commands.group][motions]
-    return np.bincount(influence.sample.astype(int), depth, len(plan.after.field.height))
+    removed = np.zeros(len(plan.after.field.height))
+    np.add.at(removed, influence.sample.astype(int), depth)
+    return removed
 
 
 def _repeats(plan: rounds.Plan, now: int) -> tuple[float, int]:

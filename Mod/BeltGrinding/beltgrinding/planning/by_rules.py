@@ -355,9 +355,8 @@ def _most(plan: rounds.Plan) -> Floats:
     more[plan.commands.kept] = 1.0
     motions = np.repeat(np.arange(len(influence)), np.diff(influence.first).astype(int))
     depth = influence.depth * more[plan.commands.group][motions]
-    removed = np.zeros(len(plan.after.field.height))
-    np.add.at(removed, influence.sample.astype(int), depth)
-    return removed
+    sample, samples = influence.sample.astype(int), len(plan.after.field.height)
+    return np.bincount(sample, depth, samples).astype(float)
 
 
 def _repeats(plan: rounds.Plan, now: int) -> tuple[float, int]:

@@ -74,7 +74,9 @@ def test_a_force_that_cuts_too_deep_at_the_greatest_feed_comes_down():
     found = grinding.grind(job_of(0.1), {**PASSES, "max_tcp_feed_mm_s": 20.0}, limits)
     force = found.plan.job["belt_machine"]["force_N"]
     share = found.plan.after.summary["in_tolerance_area_share"]
-    assert force < 20.0 and {one["change"] for one in found.tried[:2]} == {"first", "force"}
+    assert force == found.settings["force_N"] < 20.0 and {
+        one["change"] for one in found.tried[:2]
+    } == {"first", "force"}
     assert share > found.tried[0]["in_tolerance"] + 0.5, (force, share)
     assert set(found.laid["forces"]) == {-1.0}  # the program sets none
     kept = grinding.grind(job_of(0.1), {**PASSES, "force_N": 30.0}, limits)

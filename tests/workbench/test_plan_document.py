@@ -204,6 +204,29 @@ def test_before_new_passes_is_the_job_as_it_was():
 
 @pytest.mark.slow
 @pytest.mark.freecad
+def test_passes_with_less_force_are_what_was_told():
+    write_pass()
+    raster()
+    doc = FreeCAD.newDocument("gentle")
+    job = raster_job(doc)
+    doc.BeltMachine.Force = "40 N"
+    doc.RasterPath.MaxTcpFeed = 20.0
+    doc.recompute()
+    plan = beltgrinding.make_plan(job, LayPasses=True, Rounds=3, Check=False, FeedMax=25.0)
+    told, force = plan.InTolerance, json.loads(plan.Raster)["force_N"]
+    assert 0.0 < force < 40.0 and not any(plan.Kept)
+    doc.saveAs("gentle.FCStd")
+    FreeCAD.closeDocument("gentle")
+    doc = FreeCAD.openDocument("gentle.FCStd")
+    beltgrinding.apply_plan(doc.Plan)
+    pressed = [one for one in doc.RasterPath.Forces if one > 0.0]
+    assert pressed and max(pressed) == pytest.approx(force)
+    beltgrinding.simulate(doc.BeltGrindingJob)
+    assert near(beltgrinding.make_deviation(doc.BeltGrindingJob).InTolerance, told, 1e-6)
+
+
+@pytest.mark.slow
+@pytest.mark.freecad
 def test_passes_are_laid_and_planned_and_applied_together():
     write_pass()
     raster()

@@ -319,7 +319,9 @@ def store(obj: DocumentObject, job: DocumentObject, found: Found) -> None:
         {key: plan.job["simulation"][key] for key in TIME_LAW}, allow_nan=False
     )
     given = np.concatenate([one["forces"] for one in commands.arrays])
-    obj.Kept = tuple(bool(value) for value in (given < 0) & (factor == 1.0))
+    # The passes' own force, and one that was found for them, is not the belt machine's.
+    others = found.ground is not None and found.ground.settings["force_N"] > 0.0
+    obj.Kept = tuple(bool(value) for value in (given < 0) & (factor == 1.0) & (not others))
     obj.Changes = json.dumps(
         [written.changes(plan, k) if source else [] for k, source in enumerate(commands.sources)],
         allow_nan=False,

@@ -83,11 +83,14 @@ def _planned(
     tried: list[dict[str, Any]],
 ) -> Ground:
     """The plan of passes that were tried, from their feeds on."""
-    data = by_rules.with_machine(data, best.machine, best.wanted, settings)
-    laid = by_rules.lay(data, best.wanted, settings, context.part(0.0, 0.1), zones)
+    wanted, force = best.wanted, best.machine["force_N"]
+    if force != data["belt_machine"]["force_N"] and not wanted["force_N"]:
+        wanted = {**wanted, "force_N": force}  # so that its passes can be laid once more
+    data = by_rules.with_machine(data, best.machine, wanted, settings)
+    laid = by_rules.lay(data, wanted, settings, context.part(0.0, 0.1), zones)
     path = by_rules.with_path(data, laid)
     plan = rounds.plan(path, settings, context.part(0.1, 1.0), told, start=best.start)
-    return Ground(best.wanted, laid, plan, tried)
+    return Ground(wanted, laid, plan, tried)
 
 
 def _with_forces(job: Job, settings: Json) -> dict[str, Any]:

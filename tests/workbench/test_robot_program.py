@@ -320,6 +320,13 @@ def test_a_home_that_cannot_be_gets_one_line(laid):
         jobs.validate({**jobs_plain(cell(laid=laid)), "robot": {**KUKA, "program": {"home_joints_deg": [0] * 5}}})  # fmt: skip
 
 
+def test_a_home_folded_into_itself_is_refused(laid):
+    with pytest.raises(InputError, match="home_joints_deg: robot foot and robot link 4 are in"):
+        writing.plan_job(cell(laid=laid, home_joints_deg=[90, 20, 140, 0, 0, 0]))
+    with pytest.raises(InputError, match=r"safe_joints_deg\[0\]: robot foot and robot link 4 are"):
+        writing.plan_job(cell(laid=laid, safe_joints_deg=[[90, 20, 140, 0, 0, 0]]))
+
+
 def test_joints_accelerations_lower_feeds(laid):
     free = writing.plan_job(cell(laid=laid))
     slow = writing.plan_job(cell(laid=laid, joint_acceleration_deg_s2=[30] * 6))

@@ -336,6 +336,35 @@ def test_joints_accelerations_lower_feeds(laid):
     assert all(b <= a * (1 + 1e-9) for a, b in zip(*feeds)) and min(feeds[1]) < min(feeds[0])
 
 
+def test_a_jerk_of_the_joints_lowers_feeds_and_is_kept(laid):
+    most = 20.0  # degrees/s3
+    free, slow = (
+        wholes.plan(cell(laid=laid, joint_jerk_deg_s3=given), 0) for given in ([], [most] * 6)
+    )
+
+    def jerks(whole):
+        """degrees/s3, by third differences over the four poses about each inner motion of a pass."""
+        found, run = [], []
+        for move in [*whole.moves, None]:
+            if move is not None and move.kind == "LIN" and move.force >= 0.0:
+                run.append(move)
+                continue
+            if len(run) > 3:
+                at = np.stack([one.frame[:3, 3] for one in run])
+                feeds = np.array([one.feed for one in run[1:]])
+                seconds = np.linalg.norm(np.diff(at, axis=0), axis=1) / feeds
+                speeds = np.diff([one.joints_deg for one in run], axis=0) / seconds[:, None]
+                between = 0.5 * (seconds[1:] + seconds[:-1])
+                turns = np.diff(speeds, axis=0) / between[:, None]
+                found += np.abs(np.diff(turns, axis=0) / seconds[1:-1, None]).max(axis=1).tolist()
+            run = []
+        return np.array(found)
+
+    assert free.figures["slower"] == 0 and slow.figures["slower"] > 0
+    assert jerks(free).max() > 1.5 * most
+    assert 0.5 * most < jerks(slow).max() < 1.02 * most
+
+
 def test_plans_keep_to_what_the_joints_can_follow(laid):
     settings = rounds.validate({"feed_max_mm_s": 400})
     ranges = []

@@ -10,6 +10,7 @@ namespace {
 
 // Moments that are followed by themselves; they lie a step of the simulation apart.
 constexpr std::size_t kBlock = 512;
+constexpr std::size_t kFlange = 7;  // what it carries counts as the link behind the last
 
 struct Between {
     std::size_t before, after;
@@ -61,15 +62,13 @@ Joints ArmTravel::joints(double place) const {
     return a + share * (b - a);
 }
 
-std::array<double, 6> joint_levers(const RobotArm& arm, bool is_carried, std::size_t link,
+std::array<double, 6> joint_levers(const RobotArm& arm, std::size_t from, std::size_t to,
                                    double reach) {
-    // The points of the link are moved by the joints before it; those of what is carried, against
-    // the link, by the joints behind it. Each moves them by its turn times their distance from its
-    // axis at most.
+    // The points are moved by the joints between the two. Each moves them by its turn times their
+    // distance from its axis at most.
     std::array<double, 6> levers{};
-    const std::size_t begin = is_carried ? link : 0, end = is_carried ? 6 : link;
-    for (std::size_t j = begin; j < end; ++j)
-        levers[j] = chain(arm, j, is_carried ? 6 : link - 1) + reach;
+    for (std::size_t j = from; j < std::min(to, kFlange - 1); ++j)
+        levers[j] = chain(arm, j, to - 1) + reach;
     return levers;
 }
 
@@ -81,21 +80,24 @@ std::array<double, 6> joint_levers(const ArmInCell& arm, const CellFrames& cell,
     if (carried(held.carrier, cell.holding)) {
         const Frame flange_from_held = arm.flange_from_tcp * holder_from(held.carrier, cell);
         const CollisionMesh& mesh = of_link ? first_mesh : second_mesh;
-        return joint_levers(arm.arm, true, of_link ? second.link : 0,
+        return joint_levers(arm.arm, of_link ? second.link : 0, kFlange,
                             mesh.reach(flange_from_held.inverse().translation()));
     }
     const double reach =
         second.link > 0 ? second_mesh.reach(arm.arm.point(static_cast<int>(second.link) - 1)) : 0.0;
-    return joint_levers(arm.arm, false, second.link, reach);
+    const std::size_t from = first.carrier == Carrier::kLink ? first.link : 0;
+    return joint_levers(arm.arm, from, second.link, reach);
 }
 
-ArmMotion::ArmMotion(const ArmTravel& travel, Carrier other, std::size_t link,
+ArmMotion::ArmMotion(const ArmTravel& travel, const CollisionBody& first, std::size_t link,
                      const std::array<double, 6>& levers)
     : travel_(travel),
-      carried_(carried(other, travel.path().frames().holding)),
+      carried_(carried(first.carrier, travel.path().frames().holding)),
       link_(link),
-      holder_from_first_(holder_from(other, travel.path().frames())),
-      levers_(levers) {}
+      holder_from_first_(holder_from(first.carrier, travel.path().frames())),
+      levers_(levers) {
+    if (first.carrier == Carrier::kLink) first_link_ = first.link;
+}
 
 std::vector<PairMotion::Stretch> ArmMotion::stretches() const {
     std::vector<Stretch> all;
@@ -123,6 +125,9 @@ Frame ArmMotion::base_from_tcp(double place) const {
 }
 
 Frame ArmMotion::base_from_first(double place) const {
+    const ArmInCell& arm = travel_.arm();
+    if (first_link_)
+        return arm.base_from_robot * arm.arm.links(travel_.joints(place))[*first_link_];
     return carried_ ? Frame(base_from_tcp(place) * holder_from_first_) : holder_from_first_;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "collision/collision_check.h"
@@ -30,10 +31,10 @@ class ArmTravel {
 };
 
 /// mm by which a radian of each joint moves a body's points at most, whatever the joints are; of
-/// joints that do not move it 0. `link`: the body's, against what stands still, or `is_carried`:
-/// against which a body at the flange moves (0: what stands still). `reach`: mm, from the link's
-/// axis point, or from the flange's origin, to the farthest point of the body that moves.
-std::array<double, 6> joint_levers(const RobotArm& arm, bool is_carried, std::size_t link,
+/// joints that do not move it 0. The body goes with link `to`, 7: it is at the flange, and moves
+/// against link `from` (0: also what stands still). `reach`: mm, from the link's axis point, or
+/// from the flange's origin, to the farthest point of the body that moves.
+std::array<double, 6> joint_levers(const RobotArm& arm, std::size_t from, std::size_t to,
                                    double reach);
 
 /// The same of the meshes of two bodies that meet (`meets`).
@@ -44,13 +45,12 @@ std::array<double, 6> joint_levers(const ArmInCell& arm, const CellFrames& cell,
 /// s since the program's begin at a place of the arm's way.
 double arm_time(const ArmInCell& arm, double place);
 
-/// A link of the arm against a body that stands still or is carried by the robot; the link is the
-/// second.
+/// A link of the arm against a body that stands still or is carried by the robot, or against a link
+/// nearer to the foot; the link is the second.
 class ArmMotion : public PairMotion {
   public:
-    /// `link`: 0 is the foot. `levers`: as `joint_levers` gives them. Keeps a reference to
-    /// `travel`.
-    ArmMotion(const ArmTravel& travel, Carrier other, std::size_t link,
+    /// `levers`: as `joint_levers` gives them. Keeps a reference to `travel`.
+    ArmMotion(const ArmTravel& travel, const CollisionBody& first, std::size_t link,
               const std::array<double, 6>& levers);
 
     std::vector<Stretch> stretches() const override;
@@ -65,6 +65,7 @@ class ArmMotion : public PairMotion {
 
     const ArmTravel& travel_;
     bool carried_;
+    std::optional<std::size_t> first_link_;
     std::size_t link_;
     Frame holder_from_first_;
     std::array<double, 6> levers_;  ///< mm; of joints that do not move the pair: 0

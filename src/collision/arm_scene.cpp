@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "arm_motion.h"
-#include "beltgrinding/error.h"
+#include "collision/touching_links.h"
 #include "path_motion.h"
 
 namespace beltgrinding {
@@ -39,26 +39,12 @@ ArmScene::ArmScene(ArmInCell cell, const CellFrames& frames, std::vector<Collisi
       frames_(frames),
       robot_from_base_(cell_.base_from_robot.inverse()),
       tcp_from_flange_(cell_.flange_from_tcp.inverse()),
-      bodies_(std::move(bodies)) {
-    for (const CollisionBody& body : bodies_) {
-        if (body.carrier == Carrier::kLink && body.link > 6) {
-            throw InputError("collision.link",
-                             "{body}: a link of the robot needs an arm, and a number from 0 to 6",
-                             {{"body", body.name}});
-        }
-        try {
-            meshes_.emplace_back(body.mesh, context);
-        } catch (const InputError& error) {
-            throw error.within({"collision.body", "{body}: ", {{"body", body.name}}});
-        }
-    }
-    for (std::size_t a = 0; a < bodies_.size(); ++a) {
-        for (std::size_t b = 0; b < bodies_.size(); ++b) {
-            if (!meets(bodies_[a], bodies_[b], frames_.holding)) continue;
-            pairs_.push_back(
-                {a, b, joint_levers(cell_, frames_, bodies_[a], meshes_[a], bodies_[b], meshes_[b]),
-                 bodies_[a].margin + bodies_[b].margin});
-        }
+      bodies_(std::move(bodies)),
+      meshes_(prepared(bodies_, true, context)) {
+    for (const auto& [a, b] : pairs_looked_at(&cell_.arm, frames_.holding, bodies_, meshes_)) {
+        pairs_.push_back(
+            {a, b, joint_levers(cell_, frames_, bodies_[a], meshes_[a], bodies_[b], meshes_[b]),
+             bodies_[a].margin + bodies_[b].margin});
     }
 }
 
@@ -68,6 +54,10 @@ Frame ArmScene::base_from_tcp(const Joints& q) const {
 
 Frame ArmScene::robot_from_flange(const Frame& base_from_tcp) const {
     return robot_from_base_ * base_from_tcp * tcp_from_flange_;
+}
+
+double ArmScene::clearance_of(const Pair& pair, double asked) const {
+    return beltgrinding::clearance_of(bodies_[pair.first], bodies_[pair.second], asked);
 }
 
 bool ArmScene::near(const Pair& pair, const Placed& placed, double distance) const {
@@ -83,7 +73,8 @@ std::optional<ArmScene::Meeting> ArmScene::within(const Joints& q, double distan
     for (const Pair& pair : pairs_) {
         const bool of_arm = bodies_[pair.second].carrier == Carrier::kLink;
         if (pairs != Pairs::kAll && of_arm != (pairs == Pairs::kOfArm)) continue;
-        if (near(pair, placed, distance)) return Meeting{pair.first, pair.second, 0.0};
+        if (near(pair, placed, clearance_of(pair, distance)))
+            return Meeting{pair.first, pair.second, 0.0};
     }
     return std::nullopt;
 }
@@ -106,7 +97,8 @@ std::optional<ArmScene::Meeting> ArmScene::on_way(const Joints& from, const Join
     if (const auto met = within(from, clearance)) return met;
     if (const auto met = within(to, clearance)) return Meeting{met->first, met->second, 1.0};
     for (const Pair& pair : pairs_) {
-        const auto share = pair_on_way(pair, from, step, 0.0, 1.0, clearance, resolution);
+        const double own = clearance_of(pair, clearance);
+        const auto share = pair_on_way(pair, from, step, 0.0, 1.0, own, resolution);
         if (share) return Meeting{pair.first, pair.second, *share};
     }
     return std::nullopt;

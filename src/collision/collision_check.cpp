@@ -10,13 +10,12 @@
 #include "arm_motion.h"
 #include "base/parallel.h"
 #include "beltgrinding/error.h"
+#include "collision/touching_links.h"
 #include "collision_pair.h"
 #include "path_motion.h"
 
 namespace beltgrinding {
 namespace {
-
-constexpr std::size_t kLinks = 7;
 
 Fact meeting(bool collides, bool rapid, Arguments arguments, double distance) {
     if (collides && rapid)
@@ -35,8 +34,7 @@ Fact meeting(bool collides, bool rapid, Arguments arguments, double distance) {
 /// What was found of a pair, on the path's places and in the work frame.
 class Report {
   public:
-    Report(const ToolPath& path, const CollisionOptions& options)
-        : path_(path), options_(options) {}
+    explicit Report(const ToolPath& path) : path_(path) {}
 
     void add(const CollisionPair& pair, std::size_t first, std::size_t second,
              const std::vector<CollisionBody>& bodies, CollisionResult& result) const {
@@ -54,12 +52,12 @@ class Report {
             {of_arm, least->place, least->place, least->place, result.pairs.size()});
         const std::array<const CollisionBody*, 2> both = {&bodies[first], &bodies[second]};
         for (auto at = looks.begin(); at != looks.end();) {
-            if (at->distance >= options_.clearance && at->distance > 0.0) {
+            if (at->distance >= pair.clearance() && at->distance > 0.0) {
                 ++at;
                 continue;
             }
             const auto end = std::find_if(at, looks.end(), [&](const CollisionPair::Look& look) {
-                return look.distance >= options_.clearance && look.distance > 0.0;
+                return look.distance >= pair.clearance() && look.distance > 0.0;
             });
             CollisionPlaces places;
             places.of_arm = of_arm;
@@ -101,7 +99,7 @@ class Report {
         places.last = last->place;
         places.worst = worst->place;
         event.value = worst->distance;
-        event.limit = collides ? 0.0 : options_.clearance;
+        event.limit = collides ? 0.0 : pair.clearance();
         const auto [on_first, on_second] = pair.points(*worst);
         event.point = bodies[0]->carrier == Carrier::kPart   ? on_first
                       : bodies[1]->carrier == Carrier::kPart ? on_second
@@ -114,18 +112,7 @@ class Report {
     }
 
     const ToolPath& path_;
-    const CollisionOptions& options_;
 };
-
-void check_links(const std::vector<CollisionBody>& bodies, const ArmInCell* arm) {
-    for (const CollisionBody& body : bodies) {
-        if (body.carrier == Carrier::kLink && (arm == nullptr || body.link >= kLinks)) {
-            throw InputError("collision.link",
-                             "{body}: a link of the robot needs an arm, and a number from 0 to 6",
-                             {{"body", body.name}});
-        }
-    }
-}
 
 }  // namespace
 
@@ -138,46 +125,34 @@ CollisionResult check_collisions(const ToolPath& path, const std::vector<Collisi
             "collision.options",
             "collisions: the clearance must be zero or positive, the resolution positive");
     }
-    check_links(bodies, arm);
+    const std::vector<CollisionMesh> meshes = prepared(bodies, arm != nullptr, context);
     CollisionResult result;
     if (path.poses().size() < 2) return result;
-    std::vector<CollisionMesh> meshes;
-    for (const CollisionBody& body : bodies) {
-        try {
-            meshes.emplace_back(body.mesh, context);
-        } catch (const InputError& error) {
-            throw error.within({"collision.body", "{body}: ", {{"body", body.name}}});
-        }
-    }
     const PathTravel path_travel(path);
     std::optional<ArmTravel> arm_travel;
     if (arm != nullptr && !arm->way.empty()) arm_travel.emplace(path, *arm);
-    struct Numbers {
-        std::size_t first, second;
-    };
-    std::vector<Numbers> numbers;
+    std::vector<std::pair<std::size_t, std::size_t>> numbers;
     std::vector<std::unique_ptr<CollisionPair>> pairs;
-    for (std::size_t a = 0; a < bodies.size(); ++a) {
-        for (std::size_t b = 0; b < bodies.size(); ++b) {
-            const CollisionBody &first = bodies[a], &second = bodies[b];
-            if (!meets(first, second, path.frames().holding)) continue;
-            std::unique_ptr<const PairMotion> motion;
-            if (second.carrier != Carrier::kLink) {
-                const Frame holder = holder_from(second.carrier, path.frames());
-                motion =
-                    std::make_unique<PathMotion>(path_travel, first.carrier, second.carrier,
-                                                 meshes[b].reach(holder.inverse().translation()));
-            } else if (arm_travel) {
-                motion = std::make_unique<ArmMotion>(
-                    *arm_travel, first.carrier, second.link,
-                    joint_levers(*arm, path.frames(), first, meshes[a], second, meshes[b]));
-            } else {
-                continue;  // nowhere in reach
-            }
-            pairs.push_back(std::make_unique<CollisionPair>(std::move(motion), meshes[a], meshes[b],
-                                                            first.margin + second.margin, options));
-            numbers.push_back({a, b});
+    const RobotArm* looked_at = arm_travel ? &arm->arm : nullptr;
+    for (const auto& [a, b] : pairs_looked_at(looked_at, path.frames().holding, bodies, meshes)) {
+        const CollisionBody &first = bodies[a], &second = bodies[b];
+        std::unique_ptr<const PairMotion> motion;
+        if (second.carrier != Carrier::kLink) {
+            const Frame holder = holder_from(second.carrier, path.frames());
+            motion = std::make_unique<PathMotion>(path_travel, first.carrier, second.carrier,
+                                                  meshes[b].reach(holder.inverse().translation()));
+        } else if (arm_travel) {
+            motion = std::make_unique<ArmMotion>(
+                *arm_travel, first, second.link,
+                joint_levers(*arm, path.frames(), first, meshes[a], second, meshes[b]));
+        } else {
+            continue;  // nowhere in reach
         }
+        const CollisionOptions own{clearance_of(first, second, options.clearance),
+                                   options.resolution};
+        pairs.push_back(std::make_unique<CollisionPair>(std::move(motion), meshes[a], meshes[b],
+                                                        first.margin + second.margin, own));
+        numbers.emplace_back(a, b);
     }
     struct Task {
         std::size_t pair, number;
@@ -207,7 +182,7 @@ CollisionResult check_collisions(const ToolPath& path, const std::vector<Collisi
         context.throw_if_cancelled();
         pairs[k]->finish(looks[k]);
     }
-    const Report report(path, options);
+    const Report report(path);
     for (std::size_t k = 0; k < pairs.size(); ++k) {
         report.add(*pairs[k], numbers[k].first, numbers[k].second, bodies, result);
     }

@@ -12,7 +12,7 @@
 
 namespace beltgrinding {
 
-/// Follows one pair of bodies along its motion. Keeps references to the meshes and the options.
+/// Follows one pair of bodies along its motion. Keeps references to the meshes.
 class CollisionPair {
   public:
     struct Look {
@@ -28,6 +28,7 @@ class CollisionPair {
                   const CollisionMesh& second, double margin, const CollisionOptions& options);
 
     const PairMotion& motion() const { return *motion_; }
+    double clearance() const { return options_.clearance; }
 
     /// Looks at the stretch between two places, so closely that nothing is missed, in order;
     /// without the one at its begin. `done(length)` is called with the stretches that are settled.
@@ -52,7 +53,7 @@ class CollisionPair {
 
     std::unique_ptr<const PairMotion> motion_;
     const CollisionMesh &first_, &second_;
-    const CollisionOptions& options_;
+    CollisionOptions options_;
     double margin_;
     Looks looks_;
 };

@@ -45,7 +45,8 @@ Frame holder_from(Carrier carrier, const CellFrames& cell) {
 
 bool meets(const CollisionBody& first, const CollisionBody& second, Holding holding) {
     const bool held = carried(first.carrier, holding);
-    if (first.carrier == Carrier::kLink) return false;
+    if (first.carrier == Carrier::kLink)
+        return second.carrier == Carrier::kLink && first.link + 1 < second.link;
     if (second.carrier != Carrier::kLink) return !held && carried(second.carrier, holding);
     if (held) return second.link < kAtFlange;
     return second.link > 0 || first.carrier != Carrier::kBase;

@@ -15,7 +15,8 @@ Frame holder_from(Carrier carrier, const CellFrames& cell);
 /// Whether the robot carries what goes with `carrier`.
 bool carried(Carrier carrier, Holding holding);
 
-/// Whether a pair is looked at, the first standing still or, with a link, anything but a link.
+/// Whether a pair moves against each other so that it is looked at: the first stands still, or the
+/// second is a link. Of two links the first has the lower number, and they are no neighbours.
 bool meets(const CollisionBody& first, const CollisionBody& second, Holding holding);
 
 /// What all pairs that move along a path share: how far a body carried by the robot can have moved.

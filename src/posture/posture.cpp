@@ -37,7 +37,8 @@ void check(const std::vector<PassPose>& poses, const PostureOptions& options, co
     }
     if (poses.empty()) throw InputError("posture.no_pose", "posture: there is no pose");
     if (!(options.flip > 0.0) || !(options.chord > 0.0) || !(options.clearance >= 0.0) ||
-        !(options.speed.minCoeff() > 0.0) || !(options.acceleration.minCoeff() >= 0.0)) {
+        !(options.speed.minCoeff() > 0.0) || !(options.acceleration.minCoeff() >= 0.0) ||
+        !(options.jerk.minCoeff() >= 0.0)) {
         throw InputError("posture.options",
                          "posture: flip, chord and speeds must be positive, the clearance too");
     }

@@ -2,6 +2,7 @@
 
 #include "bodies.h"
 #include "collision/standing.h"
+#include "collision/touching_links.h"
 #include "dict.h"
 
 namespace beltgrinding::python {
@@ -126,6 +127,24 @@ void bind_collision(py::module_& m) {
           py::arg("clearance") = CollisionOptions().clearance,
           py::arg("resolution") = CollisionOptions().resolution, py::arg("arm") = nullptr,
           py::arg("context") = nullptr, "check_collisions, as CollisionFindings.");
+    m.def(
+        "touching_links",
+        [](const RobotArm& arm, const py::list& given) {
+            const std::vector<CollisionBody> bodies = bodies_from(given);
+            std::vector<std::pair<std::size_t, std::size_t>> pairs;
+            {
+                const py::gil_scoped_release release;
+                pairs = touching_links(arm, bodies);
+            }
+            for (auto& [a, b] : pairs) {
+                a = bodies[a].link;
+                b = bodies[b].link;
+            }
+            return pairs;
+        },
+        py::arg("arm"), py::arg("bodies"),
+        "[(number, number)] of links of a RobotArm that are not looked at against each other, as "
+        "their bodies touch nearly always; bodies: as check_collisions takes them.");
     py::class_<CollisionMesh>(m, "CollisionMesh", "A mesh as first_met takes it.")
         .def(py::init([](const TriangleMesh& mesh, const RunContext* context) {
                  const py::gil_scoped_release release;

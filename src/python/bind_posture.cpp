@@ -48,6 +48,7 @@ PostureOptions options_from(const py::dict& given, const RobotArm& arm) {
     o.clearance = take(d, "clearance", o.clearance);
     o.home = take(d, "home", o.home);
     o.acceleration = take(d, "acceleration", o.acceleration);
+    o.jerk = take(d, "jerk", o.jerk);
     o.cut = take(d, "cut", o.cut);
     // A joint of unknown speed counts as one of half a turn a second.
     for (int j = 0; j < 6; ++j) o.speed[j] = arm.max_speed()[j] > 0.0 ? arm.max_speed()[j] : M_PI;
@@ -188,7 +189,7 @@ void bind_posture(py::module_& m) {
              py::arg("context") = nullptr,
              "Joint angles along a ToolPath's passes, each from a rapid pose on; see "
              "find_postures. options: most and spacing (roll rad, lean rad, shift mm), "
-             "wheel_radius, chord, flip, singularity, clearance, home, acceleration, cut. "
+             "wheel_radius, chord, flip, singularity, clearance, home, acceleration, jerk, cut. "
              "dict(poses: dicts of pose, link, cut, torn, reached, within_limits, free, frame, q, "
              "duration, met; cost: dict of travel, acceleration, places, slow, cuts, s).");
 }

@@ -270,6 +270,7 @@ class _Maker:
         for name, least, most in (
             ("home_joints_deg", -90, 90),
             ("joint_acceleration_deg_s2", 0, 900),
+            ("joint_jerk_deg_s3", 0, 9000),
         ):
             if name in made:
                 made[name] = [self.dice.uniform(least, most) for _ in range(6)]

@@ -320,6 +320,13 @@ def test_a_home_that_cannot_be_gets_one_line(laid):
         jobs.validate({**jobs_plain(cell(laid=laid)), "robot": {**KUKA, "program": {"home_joints_deg": [0] * 5}}})  # fmt: skip
 
 
+def test_a_home_folded_into_itself_is_refused(laid):
+    with pytest.raises(InputError, match="home_joints_deg: robot foot and robot link 4 are in"):
+        writing.plan_job(cell(laid=laid, home_joints_deg=[90, 20, 140, 0, 0, 0]))
+    with pytest.raises(InputError, match=r"safe_joints_deg\[0\]: robot foot and robot link 4 are"):
+        writing.plan_job(cell(laid=laid, safe_joints_deg=[[90, 20, 140, 0, 0, 0]]))
+
+
 def test_joints_accelerations_lower_feeds(laid):
     free = writing.plan_job(cell(laid=laid))
     slow = writing.plan_job(cell(laid=laid, joint_acceleration_deg_s2=[30] * 6))
@@ -327,6 +334,35 @@ def test_joints_accelerations_lower_feeds(laid):
     feeds = [[m.feed for m in one.moves if m.kind == "LIN"] for one in (free, slow)]
     assert len(feeds[0]) == len(feeds[1])
     assert all(b <= a * (1 + 1e-9) for a, b in zip(*feeds)) and min(feeds[1]) < min(feeds[0])
+
+
+def test_a_jerk_of_the_joints_lowers_feeds_and_is_kept(laid):
+    most = 20.0  # degrees/s3
+    free, slow = (
+        wholes.plan(cell(laid=laid, joint_jerk_deg_s3=given), 0) for given in ([], [most] * 6)
+    )
+
+    def jerks(whole):
+        """degrees/s3, by third differences over the four poses about each inner motion of a pass."""
+        found, run = [], []
+        for move in [*whole.moves, None]:
+            if move is not None and move.kind == "LIN" and move.force >= 0.0:
+                run.append(move)
+                continue
+            if len(run) > 3:
+                at = np.stack([one.frame[:3, 3] for one in run])
+                feeds = np.array([one.feed for one in run[1:]])
+                seconds = np.linalg.norm(np.diff(at, axis=0), axis=1) / feeds
+                speeds = np.diff([one.joints_deg for one in run], axis=0) / seconds[:, None]
+                between = 0.5 * (seconds[1:] + seconds[:-1])
+                turns = np.diff(speeds, axis=0) / between[:, None]
+                found += np.abs(np.diff(turns, axis=0) / seconds[1:-1, None]).max(axis=1).tolist()
+            run = []
+        return np.array(found)
+
+    assert free.figures["slower"] == 0 and slow.figures["slower"] > 0
+    assert jerks(free).max() > 1.5 * most
+    assert 0.5 * most < jerks(slow).max() < 1.02 * most
 
 
 def test_plans_keep_to_what_the_joints_can_follow(laid):

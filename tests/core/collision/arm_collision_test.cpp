@@ -5,10 +5,13 @@
 #include <limits>
 #include <map>
 #include <random>
+#include <set>
 
 #include "beltgrinding/error.h"
+#include "collision/arm_scene.h"
 #include "collision/collision_check.h"
 #include "collision/collision_mesh.h"
+#include "collision/touching_links.h"
 #include "support/box.h"
 
 namespace beltgrinding {
@@ -58,9 +61,9 @@ struct Case {
 };
 
 /// Random joint angles, some of the stretches between them not known.
-Case random_case(unsigned seed, const CellFrames& cell) {
+Case random_case(unsigned seed, const CellFrames& cell, double most = 1.2) {
     std::mt19937 random(seed);
-    std::uniform_real_distribution<double> angle(-1.2, 1.2);
+    std::uniform_real_distribution<double> angle(-most, most);
     ArmInCell in_cell{arm(), Frame(Eigen::Translation3d(10, -20, 30)),
                       Frame(Eigen::Translation3d(0, 0, 60))};
     std::vector<PathPose> poses;
@@ -84,6 +87,8 @@ double brute(const Case& c, const CollisionBody& other, const CollisionMesh& mes
             const double u = static_cast<double>(k) / kParts;
             const Joints q = (1.0 - u) * c.in_cell.way[i].q + u * c.in_cell.way[i + 1].q;
             Frame base_from_other = Frame::Identity();
+            if (other.carrier == Carrier::kLink)
+                base_from_other = c.in_cell.base_from_robot * c.in_cell.arm.links(q)[other.link];
             if (other.carrier == Carrier::kTool) {
                 base_from_other = c.in_cell.base_from_robot * c.in_cell.arm.forward(q) *
                                   c.in_cell.flange_from_tcp;
@@ -132,6 +137,124 @@ TEST(ArmCollision, LeastDistancesAreThoseOfAFineSearch) {
         EXPECT_EQ(compared, 11u);
         EXPECT_EQ(least.count({7, 8}), 1u);  // as without an arm
     }
+}
+
+TEST(ArmCollision, LeastDistancesOfLinksAreThoseOfAFineSearch) {
+    std::size_t compared = 0, met = 0;
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+        const Case c = random_case(seed, {}, 3.0);
+        const std::vector<CollisionBody> bodies = links(c.in_cell.arm);
+        const auto left_out = touching_links(c.in_cell.arm, bodies);
+        const auto found = check_collisions(c.path, bodies, {30.0}, {}, &c.in_cell);
+        std::map<std::pair<std::size_t, std::size_t>, double> least;
+        for (const auto& pair : found.pairs) least[{pair.first, pair.second}] = pair.distance;
+        for (std::size_t a = 0; a <= 6; ++a) {
+            for (std::size_t b = 0; b <= 6; ++b) {
+                const std::pair<std::size_t, std::size_t> pair(a, b);
+                const bool out = std::count(left_out.begin(), left_out.end(), pair) > 0;
+                const bool expected = a + 1 < b && !out;
+                ASSERT_EQ(least.count(pair), expected ? 1u : 0u) << a << ' ' << b;
+                if (!expected) continue;
+                const double fine = brute(c, bodies[a], CollisionMesh(bodies[a].mesh), bodies[b],
+                                          CollisionMesh(bodies[b].mesh));
+                if (fine <= 0.0) {
+                    EXPECT_EQ(least[pair], 0.0) << seed << ' ' << a << ' ' << b;
+                    ++met;
+                } else {
+                    EXPECT_LT(least[pair], 1.35 * fine + 0.1) << seed << ' ' << a << ' ' << b;
+                    EXPECT_GT(least[pair], 0.25 * fine - 0.5) << seed << ' ' << a << ' ' << b;
+                }
+                ++compared;
+            }
+        }
+        for (const Event& event : found.events) {
+            EXPECT_LE(event.value, kLinksApart);
+        }
+    }
+    EXPECT_GE(compared, 30u);
+    EXPECT_GE(met, 3u);
+}
+
+TEST(ArmCollision, LinksThatAlwaysTouchAreLeftOutAndNoOthers) {
+    using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
+    // Link 3 is short: the boxes of links 2 and 4 meet at the elbow, 40 mm wide, whatever it does.
+    const RobotArm one = arm();
+    std::vector<CollisionBody> bodies = links(one);
+    bodies[0].mesh = box({0, 0, 150}, {20, 20, 150});
+    EXPECT_EQ(touching_links(one, bodies), (Pairs{{2, 4}}));
+    // A thick foot up to the shoulder's height, which the forearm meets now and then.
+    bodies[0].mesh = box({0, 0, 300}, {60, 60, 300});
+    EXPECT_EQ(touching_links(one, bodies), (Pairs{{0, 2}, {2, 4}}));
+    // A bead within the wrist's box never crosses it.
+    bodies[0].mesh = box({0, 0, 150}, {20, 20, 150});
+    bodies[6].mesh = box(one.point(5), {5, 5, 5});
+    bodies[4].mesh = box(one.point(5), {60, 60, 60});
+    EXPECT_EQ(touching_links(one, bodies), (Pairs{{4, 6}}));
+    // At joint angles 0 this arm is folded into itself; only an arm that may be there proves that
+    // the bodies are rough.
+    RobotModel folded = one.model();
+    folded.joints[2].parent_from_joint.linear() =
+        Eigen::AngleAxisd(2.8, Vec3::UnitY()).toRotationMatrix();
+    const RobotArm within(folded);
+    const auto all = touching_links(within, links(within));
+    EXPECT_GT(all.size(), 1u);
+    folded.joints[2].lower = 0.2;
+    const RobotArm beyond(folded);
+    EXPECT_LT(touching_links(beyond, links(beyond)).size(), all.size());
+}
+
+TEST(ArmCollision, LimitsKeepLinksApartThatAreNextButOne) {
+    const auto pairs = [](const RobotArm& of) {
+        std::vector<CollisionBody> bodies = links(of);
+        bodies[2].mesh = box(of.point(1), {5, 5, 5});
+        const auto found =
+            pairs_looked_at(&of, Holding::kPartInHand, bodies, prepared(bodies, true));
+        return std::set<std::pair<std::size_t, std::size_t>>(found.begin(), found.end());
+    };
+    RobotModel model = arm().model();
+    const auto all = pairs(RobotArm(model));
+    EXPECT_EQ(all.count({2, 4}), 1u);
+    EXPECT_EQ(all.count({2, 5}), 1u);
+    EXPECT_EQ(all.count({2, 3}), 0u);  // neighbours
+    EXPECT_EQ(all.count({5, 3}), 0u);  // one way round only
+    model.joints[2].upper = 3.0;       // which links 2 and 3 have between them
+    const auto limited = pairs(RobotArm(model));
+    EXPECT_EQ(limited.count({1, 3}), 0u);
+    EXPECT_EQ(limited.count({2, 4}), 0u);
+    EXPECT_EQ(limited.size() + 2, all.size());
+    EXPECT_EQ(limited.count({3, 6}), 1u);
+    model.joints[4].upper = 2.0;  // of the wrist
+    const auto bent = pairs(RobotArm(model));
+    for (const std::size_t k : {3u, 4u}) EXPECT_EQ(bent.count({k, 6}), 0u);
+}
+
+TEST(ArmCollision, ASceneSeesAnArmFoldedIntoItselfAndItsWayThere) {
+    const ArmInCell in_cell{arm(), Frame(Eigen::Translation3d(10, -20, 30))};
+    const std::vector<CollisionBody> bodies = links(in_cell.arm);
+    const ArmScene scene(in_cell, {}, bodies);
+    Joints open = Joints::Zero(), folded = open;
+    folded[2] = M_PI / 2;  // the forearm lies on the upper arm, and the wrist in the shoulder
+    EXPECT_FALSE(scene.within(open, 200.0));
+    const auto met = scene.within(folded, 0.0, ArmScene::Pairs::kOfArm);
+    ASSERT_TRUE(met);
+    EXPECT_EQ(bodies[met->first].carrier, Carrier::kLink);
+    EXPECT_EQ(bodies[met->second].carrier, Carrier::kLink);
+    const CollisionMesh first(bodies[met->first].mesh), second(bodies[met->second].mesh);
+    const auto frames = in_cell.arm.links(folded);
+    EXPECT_TRUE(first.within(second, frames[met->first].inverse() * frames[met->second], 0.0));
+    // The way there ends where a fine search finds the first touch.
+    double begin = 1.0;
+    for (int k = 1000; k >= 0; --k) {
+        if (scene.within(open + (folded - open) * (k / 1000.0), 0.0)) begin = k / 1000.0;
+    }
+    Joints before = open + (folded - open) * (begin - 0.01);
+    EXPECT_FALSE(scene.on_way(open, before, 0.0, 0.05));
+    EXPECT_TRUE(scene.on_way(open, folded, 0.0, 0.05));
+    // And through it, both ends free.
+    Joints beyond = folded;
+    beyond[2] = 2.6;
+    ASSERT_FALSE(scene.within(beyond, 0.0));
+    EXPECT_TRUE(scene.on_way(open, beyond, 0.0, 0.05));
 }
 
 TEST(ArmCollision, TheFootInThePartIsACollisionFromTheStart) {

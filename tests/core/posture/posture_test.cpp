@@ -9,6 +9,7 @@
 
 #include "beltgrinding/error.h"
 #include "cost.h"
+#include "joint_pace.h"
 #include "ladder.h"
 #include "robot/arms.h"
 #include "robot/inverse_kinematics.h"
@@ -342,6 +343,116 @@ TEST(Posture, DurationsKeepToSpeedsAndAccelerations) {
     EXPECT_LE(fastest, 1.0 + 1e-9);
     EXPECT_LE(most, 2.0 * 1.01);
     EXPECT_GT(sum, 39 * 0.004);  // the feed asks for more than the joints have
+}
+
+/// A joint that swings by amplitude * sin(rate t), sampled at equal steps of time.
+std::vector<PosturePose> swing(double amplitude, double rate, double step, std::size_t count) {
+    std::vector<PosturePose> way(count);
+    for (std::size_t n = 0; n < count; ++n) {
+        way[n].link = n == 0;
+        way[n].duration = step;
+        way[n].q[3] = amplitude * std::sin(rate * step * static_cast<double>(n));
+    }
+    return way;
+}
+
+double whole_time(const std::vector<PosturePose>& way) {
+    double sum = 0.0;
+    for (std::size_t n = 1; n < way.size(); ++n) sum += way[n].duration;
+    return sum;
+}
+
+TEST(Posture, JerkIsTheThirdDerivativeAndGoesWithTheCubeOfTheFeed) {
+    constexpr double kAmplitude = 0.4, kRate = 5.0, kStep = 0.004;
+    const double jerk = kAmplitude * std::pow(kRate, 3);  // of the swing, rad/s3
+    PostureOptions options;
+    options.speed = Joints::Constant(100.0);
+    const auto given = swing(kAmplitude, kRate, kStep, 1000);
+    // Above what the swing has, nothing changes.
+    options.jerk[3] = 1.001 * jerk;
+    auto kept = given;
+    keep_pace(options, kept);
+    EXPECT_EQ(whole_time(kept), whole_time(given));
+    // Just below, something does.
+    options.jerk[3] = 0.98 * jerk;
+    auto less = given;
+    keep_pace(options, less);
+    EXPECT_GT(whole_time(less), whole_time(given));
+    // An eighth of it: twice the time everywhere would do.
+    options.jerk[3] = jerk / 8.0;
+    auto slow = given;
+    keep_pace(options, slow);
+    EXPECT_GT(whole_time(slow), 1.5 * whole_time(given));
+    EXPECT_LT(whole_time(slow), 2.1 * whole_time(given));
+    for (std::size_t n = 2; n + 1 < slow.size(); ++n) {
+        const auto speed = [&](std::size_t k) {
+            return (slow[k].q[3] - slow[k - 1].q[3]) / slow[k].duration;
+        };
+        const auto turn = [&](std::size_t k) {
+            return (speed(k + 1) - speed(k)) / (0.5 * (slow[k].duration + slow[k + 1].duration));
+        };
+        EXPECT_LT(std::abs(turn(n) - turn(n - 1)) / slow[n].duration, 1.005 * jerk / 8.0) << n;
+    }
+    // A joint without a limit has none.
+    options.jerk = Joints::Constant(0.01);
+    options.jerk[3] = 0.0;
+    auto other = given;
+    keep_pace(options, other);
+    EXPECT_EQ(whole_time(other), whole_time(given));
+}
+
+TEST(Posture, JerkOnACircleIsThatOfAFineSearch) {
+    const RobotArm arm(testing::wrist_arm());
+    const ArmScene scene({arm}, tool_in_hand(), {});
+    PostureOptions options = options_for(arm);
+    options.home = degrees(0, -90, 90, 0, 20, 0);
+    constexpr double kRadius = 120.0, kStep = 0.01;  // mm, rad from pose to pose
+    const auto on_circle = [&](double angle) {
+        return placed(450 + kRadius * std::cos(angle), kRadius * std::sin(angle), 500, 2.2);
+    };
+    std::vector<PassPose> poses;
+    for (int k = 0; k < 300; ++k) poses.push_back({on_circle(kStep * k), 0.005, k == 0});
+    const auto free = find_postures(scene, poses, options).poses;
+    // d3q/dangle3 by a step that is none of the poses', in the configuration that was chosen.
+    const auto joints = [&](double angle, const Joints& near) {
+        Joints best = near;
+        double least = 1.0;
+        for (const ArmSolution& one :
+             inverse(arm, scene.robot_from_flange(on_circle(angle)), near, false)) {
+            const double turned = (one.q - near).cwiseAbs().maxCoeff();
+            if (turned < least) {
+                least = turned;
+                best = one.q;
+            }
+        }
+        return best;
+    };
+    const auto third = [&](std::size_t n) {
+        constexpr double kFine = 0.004;
+        const double at = kStep * (static_cast<double>(n) - 0.5);
+        const Joints& near = free[n].q;
+        return Joints((joints(at + 1.5 * kFine, near) - 3.0 * joints(at + 0.5 * kFine, near) +
+                       3.0 * joints(at - 0.5 * kFine, near) - joints(at - 1.5 * kFine, near)) /
+                      std::pow(kFine, 3));
+    };
+    double most = 0.0;
+    for (std::size_t n = 2; n + 1 < free.size(); ++n)
+        most = std::max(most, third(n).cwiseAbs().maxCoeff() * std::pow(kStep / 0.005, 3));
+    // Just more than that is free; a seventh of it takes longer, by no more than the cube root.
+    options.jerk = Joints::Constant(1.01 * most);
+    EXPECT_NEAR(whole_time(find_postures(scene, poses, options).poses), whole_time(free), 1e-9);
+    options.jerk = Joints::Constant(0.97 * most);
+    EXPECT_GT(whole_time(find_postures(scene, poses, options).poses), whole_time(free) + 1e-6);
+    options.jerk = Joints::Constant(most / 7.0);
+    const auto slow = find_postures(scene, poses, options).poses;
+    EXPECT_LT(whole_time(slow), 1.05 * std::cbrt(7.0) * whole_time(free));
+    double kept = 0.0;
+    for (std::size_t n = 2; n + 1 < slow.size(); ++n) {
+        const double feed = kStep / slow[n].duration;
+        kept = std::max(kept, third(n).cwiseAbs().maxCoeff() * std::pow(feed, 3));
+    }
+    EXPECT_LT(kept, 1.1 * most / 7.0);
+    EXPECT_GT(kept, 0.6 * most / 7.0);
 }
 
 }  // namespace

@@ -34,6 +34,8 @@ def follow(
     met = collision.check(
         checked, shape, [path], found["warnings"], context.part(0.5, 1.0), [found]
     )
+    if met:
+        found["warnings"] += collision.links_left_out(robot, collision.arm_bodies(robot))
     for one in met:
         found["events"] = events.merge([(0, 0.0, found["events"] + one["events"])])
         found["pairs"] = one["pairs"]

@@ -154,6 +154,24 @@ def arm_bodies(robot: Json) -> list[dict[str, Any]]:
     return found
 
 
+def links_left_out(robot: Json, bodies: Sequence[Json]) -> Facts:
+    """A fact that names the links of a job's robot (with its defaults) whose ``bodies``, among others, are too rough to be
+    looked at against each other; [] if there are none."""
+    links = [body for body in bodies if body["frame"] == "link"]
+    pairs = core.touching_links(known(robots.arm_of(robot)), links) if links else []
+    if not pairs:
+        return []
+    told = ", ".join(f"{first}/{second}" for first, second in pairs)
+    return [
+        core.Fact(
+            "cell.links_left_out",
+            "{robot}: links {pairs} are not looked at against each other: their bodies touch at joint angles 0 or in more than a quarter of all postures",
+            robot=robots.name(robot),
+            pairs=told,
+        )
+    ]
+
+
 def read_body(
     body: Stock | Body | Json, name: str, warnings: Facts, context: Context = None
 ) -> core.TriangleMesh:

@@ -135,9 +135,7 @@ class Belt:
 class Compliance:
     """``belt_machine.compliance`` of a job."""
 
-    model: Literal[
-        "wheel_rim", "bonded_layer", "half_space", "elastic_foundation", "surrogate", "geometric"
-    ]
+    model: Literal["wheel_rim", "bonded_layer", "half_space", "elastic_foundation", "surrogate", "geometric"]
     youngs_modulus_MPa: float
     poissons_ratio: float
     rim_thickness_mm: float
@@ -410,6 +408,7 @@ class RobotProgram:
     clearance_mm: float
     joint_speed_percent: float
     joint_acceleration_deg_s2: tuple[float, ...]
+    joint_jerk_deg_s3: tuple[float, ...]
     seed: int
 
 

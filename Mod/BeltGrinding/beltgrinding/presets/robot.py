@@ -54,7 +54,7 @@ def validate(robot: Json) -> None:
             key="robot.start_joints_deg",
             count=len(robot["start_joints_deg"]),
         )
-    for name in ("home_joints_deg", "joint_acceleration_deg_s2"):
+    for name in ("home_joints_deg", "joint_acceleration_deg_s2", "joint_jerk_deg_s3"):
         if len(robot["program"][name]) not in (0, JOINTS):
             raise InputError(
                 "presets.six_angles",

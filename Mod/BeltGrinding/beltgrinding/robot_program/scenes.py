@@ -33,6 +33,7 @@ def of_job(
     near: list[dict[str, object]] = []
     if job.cell.check_collisions and shape is not None and shape.valid:
         near = collision.bodies(job, shape, warnings, context) + collision.arm_bodies(robot)
+        warnings += collision.links_left_out(robot, near)
     else:
         warnings.append(
             core.Fact(

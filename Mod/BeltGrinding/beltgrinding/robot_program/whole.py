@@ -198,6 +198,8 @@ class Planner:
         }
         if own.joint_acceleration_deg_s2:
             options["acceleration"] = np.radians(own.joint_acceleration_deg_s2)
+        if own.joint_jerk_deg_s3:
+            options["jerk"] = np.radians(own.joint_jerk_deg_s3)
         return options
 
     def _frame(self, q: Floats) -> Floats:

@@ -58,6 +58,7 @@ class ArmScene {
         double margin;                 // mm
     };
     class Placed;
+    double clearance_of(const Pair& pair, double asked) const;
     bool near(const Pair& pair, const Placed& placed, double distance) const;
     std::optional<double> pair_on_way(const Pair& pair, const Joints& from, const Joints& step,
                                       double begin, double end, double clearance,

@@ -42,6 +42,10 @@ struct CollisionOptions {
     double resolution = 0.05;  ///< mm; bodies that touch by a shorter way may be missed
 };
 
+/// mm that two links of the arm keep from each other at most, whatever the clearance: bodies of
+/// arms are rough.
+constexpr double kLinksApart = 1.0;
+
 /// How near two bodies come that move against each other; or the arm's foot and what stands still.
 struct PairClearance {
     /// Numbers of the bodies; the first stands still, or the second is a link of the arm.
@@ -81,9 +85,9 @@ struct CollisionResult {
 /// it is below the clearance; beyond, a quarter of it is proved, and mostly it is exact.
 ///
 /// Links go as `arm` says, by joint interpolation between its moments; each is followed against
-/// what stands still and what the robot carries. Not looked at: links against each other; the foot
-/// against bodies of the base, on which it stands; the last two links against what is at the
-/// flange.
+/// what stands still, what the robot carries and the other links. Not looked at: the foot against
+/// bodies of the base, on which it stands; the last two links against what is at the flange;
+/// neighbouring links; `touching_links`.
 ///
 /// Results do not depend on the number of threads. Throws InputError (no mesh, bad options, links
 /// without an arm) and Cancelled.

@@ -38,6 +38,7 @@ struct PostureOptions {
     Joints home = Joints::Zero();          ///< rad, where the program begins and ends
     Joints speed = Joints::Ones();         ///< rad/s, greatest; scales all costs
     Joints acceleration = Joints::Zero();  ///< rad/s2, greatest; 0: not limited
+    Joints jerk = Joints::Zero();          ///< rad/s3, the same
     double cut = 10.0;                     ///< s, what the cut of a pass costs besides its way
 };
 
@@ -56,7 +57,7 @@ struct PosturePose {
     Free free{};
     Frame base_from_tcp = Frame::Identity();
     Joints q = Joints::Zero();  ///< rad
-    double duration = 0.0;      ///< s from the pose before that speeds and accelerations leave
+    double duration = 0.0;  ///< s from the pose before that speeds, accelerations and jerks leave
 };
 
 /// What a run of poses costs, s.

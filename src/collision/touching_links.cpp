@@ -1,0 +1,135 @@
+#include "collision/touching_links.h"
+
+#include <algorithm>
+#include <array>
+
+#include "beltgrinding/error.h"
+#include "path_motion.h"
+
+namespace beltgrinding {
+namespace {
+
+using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
+
+constexpr std::size_t kPostures = 200;
+constexpr std::size_t kMost = kPostures / 4;  // in which bodies that are not too rough may touch
+
+/// The n-th number of van der Corput's sequence, in [0, 1). J. H. Halton, On the efficiency of
+/// certain quasi-random sequences of points (1960).
+double radical_inverse(std::size_t n, std::size_t base) {
+    double value = 0.0, digit = 1.0;
+    for (; n > 0; n /= base) {
+        digit /= static_cast<double>(base);
+        value += digit * static_cast<double>(n % base);
+    }
+    return value;
+}
+
+std::vector<Joints> postures(const RobotArm& arm) {
+    constexpr std::array<std::size_t, 6> kPrimes = {2, 3, 5, 7, 11, 13};
+    std::vector<Joints> all(kPostures);
+    for (std::size_t n = 0; n < kPostures; ++n) {
+        for (int j = 0; j < 6; ++j) {
+            const double share = radical_inverse(n + 1, kPrimes[static_cast<std::size_t>(j)]);
+            all[n][j] = arm.lower()[j] + share * (arm.upper()[j] - arm.lower()[j]);
+        }
+    }
+    return all;
+}
+
+bool touch(const CollisionMesh& first, const CollisionMesh& second,
+           const Frame& first_from_second) {
+    return first.within(second, first_from_second, kLinksApart) ||
+           first.surrounds(second, first_from_second) ||
+           second.surrounds(first, first_from_second.inverse());
+}
+
+bool both_links(const CollisionBody& first, const CollisionBody& second) {
+    return first.carrier == Carrier::kLink && second.carrier == Carrier::kLink;
+}
+
+/// Whether limits keep two links apart: they are next but one to each other, and a joint between
+/// cannot go all the way round; or they are elbow and flange about a spherical wrist, whose joint 5
+/// cannot.
+bool kept_apart(const RobotArm& arm, std::size_t first, std::size_t second) {
+    constexpr double kWholeTurn = 2.0 * M_PI - 1e-6;
+    const Joints range = arm.upper() - arm.lower();
+    if (first == 3 && second == 6 && arm.structure() == RobotArm::Structure::kSphericalWrist)
+        return range[4] < kWholeTurn;
+    return first + 2 == second &&
+           range.segment<2>(static_cast<Eigen::Index>(first)).minCoeff() < kWholeTurn;
+}
+
+bool looked_at(const RobotArm& arm, const CollisionBody& first, const CollisionBody& second) {
+    return !both_links(first, second) || !kept_apart(arm, first.link, second.link);
+}
+
+}  // namespace
+
+Pairs touching_links(const RobotArm& arm, const std::vector<CollisionBody>& bodies,
+                     const std::vector<CollisionMesh>& meshes) {
+    const bool zero_allowed =
+        (arm.lower().array() <= 0.0).all() && (arm.upper().array() >= 0.0).all();
+    std::vector<std::array<Frame, 7>> placed;
+    for (const Joints& q : postures(arm)) placed.push_back(arm.links(q));
+    Pairs found;
+    for (std::size_t a = 0; a < bodies.size(); ++a) {
+        for (std::size_t b = 0; b < bodies.size(); ++b) {
+            if (!both_links(bodies[a], bodies[b])) continue;
+            const std::size_t i = bodies[a].link, j = bodies[b].link;
+            if (i + 1 >= j || kept_apart(arm, i, j)) continue;
+            // At joint angles 0 all links' frames are the robot's base.
+            std::size_t count =
+                zero_allowed && touch(meshes[a], meshes[b], Frame::Identity()) ? kPostures : 0;
+            for (std::size_t n = 0; n < kPostures && count <= kMost; ++n)
+                count += touch(meshes[a], meshes[b], placed[n][i].inverse() * placed[n][j]);
+            if (count > kMost) found.emplace_back(a, b);
+        }
+    }
+    return found;
+}
+
+Pairs touching_links(const RobotArm& arm, const std::vector<CollisionBody>& bodies) {
+    return touching_links(arm, bodies, prepared(bodies, true));
+}
+
+std::vector<CollisionMesh> prepared(const std::vector<CollisionBody>& bodies, bool has_arm,
+                                    const RunContext& context) {
+    std::vector<CollisionMesh> meshes;
+    for (const CollisionBody& body : bodies) {
+        if (body.carrier == Carrier::kLink && (!has_arm || body.link > 6)) {
+            throw InputError("collision.link",
+                             "{body}: a link of the robot needs an arm, and a number from 0 to 6",
+                             {{"body", body.name}});
+        }
+        try {
+            meshes.emplace_back(body.mesh, context);
+        } catch (const InputError& error) {
+            throw error.within({"collision.body", "{body}: ", {{"body", body.name}}});
+        }
+    }
+    return meshes;
+}
+
+Pairs pairs_looked_at(const RobotArm* arm, Holding holding,
+                      const std::vector<CollisionBody>& bodies,
+                      const std::vector<CollisionMesh>& meshes) {
+    const Pairs left_out = arm != nullptr ? touching_links(*arm, bodies, meshes) : Pairs();
+    Pairs found;
+    for (std::size_t a = 0; a < bodies.size(); ++a) {
+        for (std::size_t b = 0; b < bodies.size(); ++b) {
+            const std::pair<std::size_t, std::size_t> pair(a, b);
+            if (meets(bodies[a], bodies[b], holding) &&
+                (arm == nullptr || looked_at(*arm, bodies[a], bodies[b])) &&
+                std::find(left_out.begin(), left_out.end(), pair) == left_out.end())
+                found.push_back(pair);
+        }
+    }
+    return found;
+}
+
+double clearance_of(const CollisionBody& first, const CollisionBody& second, double asked) {
+    return both_links(first, second) ? std::min(asked, kLinksApart) : asked;
+}
+
+}  // namespace beltgrinding

@@ -151,6 +151,18 @@ def attempt(
     context: core.RunContext | None = None,
 ) -> Tried:
     """Lays passes on a job (validated, in its time) and plans them roughly. Raises InputError, Cancelled."""
+    return attempted(data, move, settings, fidelity, zones, context)[0]
+
+
+def attempted(
+    data: Json,
+    move: Move,
+    settings: Json,
+    fidelity: Fidelity,
+    zones: Zones | None = None,
+    context: core.RunContext | None = None,
+) -> tuple[Tried, rounds.Plan]:
+    """As ``attempt``, with the rough plan itself."""
     context = context or core.RunContext()
     change, machine, wanted = move
     data = with_machine(data, machine, wanted, settings)
@@ -160,7 +172,7 @@ def attempt(
     job = _coarser(rounds.settled(with_path(data, laid), context), laid["area_mm2"], fidelity)
     quick = {"rounds": fidelity.rounds, "check": False, "levels": 0}
     plan = rounds.plan(job, {**settings, **quick}, context.part(0.2, 1.0))
-    return _seen(move[0], machine, wanted, laid, plan)
+    return _seen(move[0], machine, wanted, laid, plan), plan
 
 
 def expected(job: Json, context: core.RunContext | None = None) -> float:
@@ -324,7 +336,8 @@ def _repeats(plan: rounds.Plan, now: int) -> tuple[float, int]:
     depth = influence.depth * more[plan.commands.group][motions]
     most = np.bincount(influence.sample.astype(int), depth, len(field.height))
     lower, upper = verdicts.limits(plan.after.job, field)
-    needed = np.asarray(field.stock_height, dtype=float) - upper
+    removed = np.bincount(influence.sample.astype(int), influence.depth, len(field.height))
+    needed = np.asarray(field.height, dtype=float) + removed - upper
     areas = np.asarray(field.areas, dtype=float)
     left = (most > 0.0) & (most < needed) & (np.asarray(field.flags) & core.MISSED == 0)
     if not left.any():

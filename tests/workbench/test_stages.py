@@ -8,8 +8,8 @@ import pytest
 from beltgrinding import cli
 from beltgrinding.engine import InputError, core
 from beltgrinding.job import load as jobs
-from beltgrinding.planning import belts, rounds, stages, wheels
-from beltgrinding.planning.search import UNTIL_IT_PAYS, Search
+from beltgrinding.planning import belts, by_rules, rounds, stages, wheels
+from beltgrinding.planning.search import Search
 from beltgrinding.planning.stages import Node, Step, Tool
 from support import synthetic_finish as made_up
 from test_job import plate
@@ -113,7 +113,7 @@ def chosen(shape, more, **options):
         stages.tools(job, machines, []),
         stages.first_settings(ALONG),
         settings,
-        Search(UNTIL_IT_PAYS, fixed=("along", "direction", "belt_angle_deg"), workers=2),
+        Search(0.0, workers=2),  # rules alone
     )
     return chooser, chooser.choose(2)
 
@@ -128,14 +128,17 @@ def written(folder):
 
 
 @pytest.mark.slow
-def test_a_plate_is_one_stage(tmp_path):
+def test_a_plate_is_one_stage(monkeypatch):
+    monkeypatch.setattr(stages, "WAYS", 1)
     chooser, best = chosen(plate(20.0, 15.0), [wheels.Wheel(8.0, 4.0)], radius=20.0, width=8.0)
     assert len(best.steps) == 1
     assert any(len(one.steps) == 2 for one in chooser.nodes)  # two were tried
 
 
 @pytest.mark.slow
-def test_a_small_wheel_grinds_what_a_large_one_cannot_enter(tmp_path):
+def test_a_small_wheel_grinds_what_a_large_one_cannot_enter(tmp_path, monkeypatch):
+    monkeypatch.setattr(stages, "WAYS", 1)
+    monkeypatch.setattr(by_rules, "TRIES", 2)
     small = wheels.Wheel(4.0, 2.5, 4.0)
     chooser, best = chosen(sheet_with_groove(), [small], radius=40.0, width=10.0)
     assert [(one.tool, one.everywhere) for one in best.steps] == [(0, True), (1, False)]

@@ -198,7 +198,7 @@ void Look::finish() {
                 return !std::isfinite(f.settled[i]) || f.settled[i] < 0.0F ||
                        !(f.unknown[i] >= 0.0F && f.unknown[i] <= 1.0F) || !f.lay[i].allFinite() ||
                        f.crossing[i] < 0.0F || std::isinf(f.crossing[i]) ||
-                       never != (f.motion[i] == FinishTrace::kNever) ||
+                       (never && f.motion[i] != FinishTrace::kNever) ||
                        f.outside[i] > FinishTrace::kBeltWear;
             });
 }

@@ -9,7 +9,7 @@
 
 #include "base/parallel.h"
 #include "beltgrinding/error.h"
-#include "height_lookup.h"
+#include "heightfield/height_lookup.h"
 #include "mesh/topology.h"
 
 namespace beltgrinding {

@@ -109,6 +109,8 @@ void bind_height_field(py::module_& m) {
                     roughness[i] = finish.roughness(i);
                 py::dict d;
                 d["roughness"] = own(std::move(roughness));
+                d["settled"] = view<float>(finish.settled, 1, self);
+                d["unknown"] = view<float>(finish.unknown, 1, self);
                 d["lay"] = view<float>(finish.lay, 3, self);
                 d["crossing"] = view<float>(finish.crossing, 1, self);
                 d["passes"] = view<std::uint32_t>(finish.passes, 1, self);
@@ -117,7 +119,8 @@ void bind_height_field(py::module_& m) {
                 return d;
             },
             "What finish the passes left: a dict of (n,) arrays roughness (Ra, um; NaN: not "
-            "known), crossing (rad between the scratches of the last two passes; NaN: fewer), "
+            "known), settled and unknown (of which it is made: um, share), crossing (rad between "
+            "the scratches of the last two passes; NaN: fewer), "
             "passes (how many), motion (of the last pass, as in trace; NEVER: none), outside (what "
             "of the last pass was not measured: 0 nothing, 1 pressure, 2 belt speed, 3 feed, 4 "
             "wear), and lay (n, 3), along which the last pass scratched (unit, work frame; 0: no "
@@ -189,6 +192,19 @@ void bind_height_field(py::module_& m) {
         },
         py::arg("field"), py::arg("thickness"),
         "More stock on that which is there, (n,) mm; where rays missed it stays so.");
+    m.def(
+        "apply_left",
+        [](HeightField& field, const HeightField& left, bool finish, const RunContext* context) {
+            StockReport report;
+            {
+                const py::gil_scoped_release release;
+                report =
+                    apply_left(field, left, finish, context != nullptr ? *context : RunContext());
+            }
+            return to_dict(report);
+        },
+        py::arg("field"), py::arg("left"), py::arg("finish") = false, py::arg("context") = nullptr,
+        "What an earlier run of the same design left: heights, flags and, if wanted, finish.");
     m.def(
         "apply_mesh",
         [](HeightField& field, const TriangleMesh& mesh, double above, double below,

@@ -327,6 +327,7 @@ class _Maker:
         rim = machine.setdefault("compliance", {})
         rim["rim_thickness_mm"] = wheel["radius_mm"] * dice.uniform(0.1, 0.5)
         stock = made.get("stock", {})
+        stock.pop("left_by", None)
         for name in ("file", "brep"):
             if stock.get("kind", "allowance") == "allowance" or name in stock:
                 stock.pop(name, None)

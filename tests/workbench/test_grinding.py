@@ -89,7 +89,7 @@ def test_forces_go_down_only_unless_asked():
     assert found.plan.factors.min() < 1.0 and min(found.laid["forces"]) < 30.0
     forces = found.plan.commands.force(found.plan.factors)
     assert forces.max() <= 30.0 + 1e-9 and found.plan.factors.min() >= grinding.GENTLER - 1e-9
-    position = grinding._with_forces(typed(job_of(control="position")), rounds.validate({}))
+    position = grinding.with_forces(typed(job_of(control="position")), rounds.validate({}))
     assert position["force_min_N"] == 0.0
 
 

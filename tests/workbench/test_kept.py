@@ -200,6 +200,7 @@ VALUES = {
     "stock.file": lambda folder: str(folder / "thick.ply"),
     "stock.brep": lambda _: OwnBrep(thick()[0]),
     "stock.kind": lambda _: "mesh",
+    "stock.left_by": lambda folder: str(folder / "none.h5"),
     "belt_machine.platen.length_mm": lambda _: 12.0,
     "belt_machine.platen.radius_mm": lambda _: 40.0,
     "belt_machine.frame.length_mm": lambda _: 60.0,
@@ -325,6 +326,7 @@ def leaves(rule, path=()):
 REFUSED = {  # the whole run is an error
     "belt_machine.compliance.surrogate_file",  # there is no such file
     "design.flip_faces",  # of a solid
+    "stock.left_by",
     "robot.model.urdf",  # beside joints
     "robot.model.base_link",  # without a URDF
     "robot.model.tip_link",

@@ -83,6 +83,51 @@ TEST(Stock, SealedSolidGivesExactHeights) {
     EXPECT_NEAR(report.volume, 0.6 * 200.0, 1e-2);
 }
 
+TEST(Stock, WhatARunLeftIsTheNextStock) {
+    HeightField left = testing::plate(20.0, 10.0, 0.5);
+    for (std::size_t i = 0; i < left.size(); ++i)
+        left.height[i] = 0.1 + 0.02 * left.point[i].x() - 0.01 * left.point[i].y();
+    left.flags[0] |= kMissed | kDefective;
+    FinishTrace& finish = left.finish;
+    finish.settled.assign(left.size(), 1.5F);
+    finish.unknown.assign(left.size(), 0.0F);
+    finish.lay.assign(left.size(), Vec3f::UnitX());
+    finish.crossing.assign(left.size(), std::nanf(""));
+    finish.passes.assign(left.size(), 3);
+    finish.motion.assign(left.size(), 7);
+    finish.outside.assign(left.size(), FinishTrace::kInside);
+
+    HeightField same = testing::plate(20.0, 10.0, 0.5);
+    const StockReport report = apply_left(same, left, true);
+    EXPECT_EQ(report.missed, 1u);
+    EXPECT_NE(same.flags[0] & kMissed, 0);
+    for (std::size_t i = 1; i < same.size(); ++i) {
+        ASSERT_NEAR(same.height[i], left.height[i], 1e-12) << i;
+        ASSERT_FLOAT_EQ(same.finish.roughness(i), 1.5F);
+        ASSERT_EQ(same.finish.passes[i], 3u);
+        ASSERT_EQ(same.finish.motion[i], FinishTrace::kNever);  // another run's
+    }
+    EXPECT_NO_THROW(same.validate());
+
+    HeightField finer = testing::plate(20.0, 10.0, 0.37);
+    apply_left(finer, left);
+    EXPECT_TRUE(finer.finish.empty());
+    for (std::size_t i = 0; i < finer.size(); ++i) {
+        const Vec3& p = finer.point[i];
+        const bool by_the_missed = (p - left.point[0]).norm() < 1.0;
+        const bool outside = std::abs(p.x() - 10.0) > 9.7 || std::abs(p.y() - 5.0) > 4.7;
+        if (by_the_missed || outside) continue;
+        ASSERT_NEAR(finer.height[i], 0.1 + 0.02 * p.x() - 0.01 * p.y(), 1e-9) << p.transpose();
+    }
+
+    HeightField elsewhere = plate_at(0.0);
+    for (Vec3& p : elsewhere.point) p += Vec3(5.0, 5.0, 0.0);
+    EXPECT_THROW(apply_left(elsewhere, left), InputError);
+    HeightField other = testing::plate(20.0, 10.0, 0.5);
+    for (std::uint32_t& face : other.face) face = 1;
+    EXPECT_THROW(apply_left(other, left), InputError);
+}
+
 TEST(Stock, StockBelowTheDesignIsDefective) {
     HeightField field = plate_at(10.3);
     const StockReport report = apply_mesh(field, box({0, 0, 0}, {30, 20, 10}), {});

@@ -12,6 +12,7 @@ TEST(UnsoundField, IsRefusedByAllStock) {
     testing::expect_unsound_refused(sound, [](HeightField& f) { apply_allowance(f, 0.3); });
     testing::expect_unsound_refused(
         sound, [](HeightField& f) { add_stock(f, std::vector<double>(f.size(), 0.3)); });
+    testing::expect_unsound_refused(sound, [&](HeightField& f) { apply_left(f, sound); });
     testing::expect_unsound_refused(sound, [](HeightField& f) {
         TriangleMesh mesh;  // a sheet 0.5 mm above
         mesh.vertices = {{-9, -9, 0.5F}, {9, -9, 0.5F}, {0, 20, 0.5F}};

@@ -51,6 +51,16 @@ class Learned(NamedTuple):
     samples: int
 
 
+def refuse_stages(job: Json) -> None:
+    """Raises InputError for a job that begins with what an earlier run left: other laws have removed, too."""
+    if "left_by" in job["stock"]:
+        raise InputError(
+            "calibration.learn_stages",
+            "{key}: an earlier run has removed, too; a law is learnt from a part that one job has ground",
+            key="stock.left_by",
+        )
+
+
 def learn(
     job: Json,
     measured: Floats,
@@ -70,6 +80,7 @@ def learn(
             "learn: a {model} law has no coefficient to learn",
             model=law["model"],
         )
+    refuse_stages(job)
     calibration = law["calibration"]
     if scatter is None:
         scatter = calibration.get("widening", 1.0) * calibration.get("scatter", 0.0) or SCATTER

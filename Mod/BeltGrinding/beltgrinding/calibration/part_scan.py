@@ -14,6 +14,7 @@ from ..base.kinds import Array, Floats
 from ..engine import InputError, core
 from ..job import sizes, workpiece
 from ..simulation.result import Result
+from .learning import refuse_stages
 
 CAUCHY = 2.385  # 95 % efficient under normal scatter
 ITERATIONS = 100
@@ -155,6 +156,7 @@ def from_files(
     """
     result = Result.read(result)
     field, law = result.field, result.job["law"]
+    refuse_stages(result.job)
     measured = measured_heights(result, scan, unit_mm, placement)
     removed = np.asarray(field.stock_height, dtype=float) - field.height
     figures = calibrate_from_scan(

@@ -43,7 +43,7 @@ def _passes(one):
     words = [] if one["better"] else ["not better"]
     words += ["full plan"] if one["change"] == "full" else []
     return (
-        _wheel(one["wheel"]),
+        wheel(one["wheel"]),
         _along(one),
         f"{one['belt_angle_deg']:.1f}",
         f"{one['step_over_mm']:.2f}",
@@ -55,7 +55,7 @@ def _passes(one):
     )
 
 
-def _wheel(one):
+def wheel(one):
     crown = f"c{one['crown_radius_mm']:g}" if one["crown_radius_mm"] else ""
     return f"{one['radius_mm']:g} x {one['width_mm']:g}{crown}"
 

@@ -148,9 +148,10 @@ def _worst(
 
 def place(field: core.HeightField, sample: int, motions: Motions | None) -> dict[str, Any]:
     """Where a sample of a field with a finish lies and which motion passed last over it, as a verdict has it; None
-    where no pass was, or where that is not known.
+    where no pass of this run was, or where that is not known.
     """
-    motion = int(field.finish["motion"][sample]) if field.finish["passes"][sample] else None
+    number = int(field.finish["motion"][sample])
+    motion = None if number == core.NEVER else number
     told = motion is not None and motions is not None and motion < len(motions["program"])
     of = motions if told else None
     return {

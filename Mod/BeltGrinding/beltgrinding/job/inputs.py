@@ -45,6 +45,8 @@ def _inputs(job: Json) -> Iterator[tuple[str, Path | None, Any]]:
             yield key, Path(job[key]["file"]), None
         elif "brep" in job[key]:
             yield f"{key}.brep", None, job[key]["brep"]
+        if "left_by" in job[key]:
+            yield f"{key}.left_by", Path(job[key]["left_by"]), None
     for i, body in enumerate(job["cell"].get("bodies", [])):
         if "file" in body:
             yield f"cell.bodies[{i}]", Path(body["file"]), None

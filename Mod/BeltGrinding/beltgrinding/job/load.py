@@ -66,10 +66,12 @@ def validate(job: Json, folder: Path | str = ".") -> dict[str, Any]:
 
 def _complete(job: dict[str, Any], folder: Path | str) -> None:
     """Fills in what the schema cannot say, and refuses what it cannot refuse."""
-    cell, robot = job["cell"], job["robot"]
-    for holder in [job["design"], job["stock"], *job["programs"], *cell["bodies"]]:
+    cell, robot, stock = job["cell"], job["robot"], job["stock"]
+    for holder in [job["design"], stock, *job["programs"], *cell["bodies"]]:
         if "file" in holder:
             holder["file"] = absolute(folder, holder["file"])
+    if "left_by" in stock:
+        stock["left_by"] = absolute(folder, stock["left_by"])
     for i, program in enumerate(job["programs"]):
         if isinstance(program.get("values"), dict):
             from ..programs.registry import check_values
@@ -98,7 +100,6 @@ def _complete(job: dict[str, Any], folder: Path | str) -> None:
             "{key}: a surrogate needs the key 'surrogate_file'",
             key="belt_machine.compliance",
         )
-    stock = job["stock"]
     if stock["kind"] == "mesh" and "file" not in stock:
         raise InputError(
             "job.no_mesh_file", "{key}: a mesh stock needs the key 'file'", key="stock"

@@ -54,6 +54,7 @@ class Stock:
     offset_mm: float
     search_above_mm: float
     search_below_mm: float
+    left_by: str | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -209,21 +209,26 @@ def make_stocked_field(
     Raises InputError, Cancelled."""
     read = typed(job)
     stock, name = read.stock, kept.name(shape)
-    if stock.kind == "allowance" or name is None or read.sampling.spacing_mm == 0:
+    quick = stock.kind == "allowance" and stock.left_by is None
+    finish = read.finish is not None and read.law.model != "geometric"
+    if quick or name is None or read.sampling.spacing_mm == 0:
         field = make_field(read, shape, warnings, context.part(0.0, 0.75))
         sampled()
-        apply_stock(field, stock, warnings, context.part(0.75, 1.0), shape)
+        apply_stock(field, stock, warnings, context.part(0.75, 1.0), shape, finish)
         return field
 
     def make() -> tuple[core.HeightField, Facts]:
         told: Facts = []
         field = make_field(read, shape, told, context.part(0.0, 0.75))
         sampled()
-        apply_stock(field, stock, told, context.part(0.75, 1.0), shape)
+        apply_stock(field, stock, told, context.part(0.75, 1.0), shape, finish)
         return field, told
 
     def parts() -> tuple[Any, ...]:
-        return _field_parts(read, name, check_faces(read, shape)), stock, made_from(stock)
+        sampled_by = _field_parts(read, name, check_faces(read, shape))
+        if stock.left_by is None:
+            return sampled_by, stock, made_from(stock)
+        return sampled_by, finish, inputs.file_digest("", stock.left_by)
 
     field, told = kept.get("stock", parts, make, _field_bytes, _field_copy)
     sampled()
@@ -242,10 +247,16 @@ def apply_stock(
     warnings: Facts,
     context: Context,
     shape: core.Shape | None = None,
+    finish: bool = False,
 ) -> None:
-    """Puts the stock on the field: where its placement has it, and thicker by its offset. ``shape``: the design, which a mesh
-    is compared with in size. Raises InputError, Cancelled."""
+    """Puts the stock on the field: where its placement has it, and thicker by its offset; or what an earlier run left, with
+    its ``finish`` if that is wanted. ``shape``: the design, which a mesh is compared with in size. Raises InputError,
+    Cancelled."""
     stock = records.made(Stock, stock)
+    if stock.left_by is not None:
+        left, _ = core.HeightField.from_hdf5(stock.left_by)
+        warnings += core.apply_left(field, left, finish, known(context))["warnings"]
+        return
     placement = frame_of(stock.placement, "stock.placement")
     moved = not np.array_equal(placement, np.eye(4))
     offset, unit = stock.offset_mm, 1.0

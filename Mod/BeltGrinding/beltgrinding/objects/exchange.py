@@ -151,6 +151,13 @@ def _open_job(doc: Document, data: Json, path: Path, made: list[DocumentObject])
 def _open_stock(
     doc: Document, stock: DocumentObject, data: Json, made: list[DocumentObject]
 ) -> None:
+    if "left_by" in data:
+        raise InputError(
+            "objects.left_by",
+            "{key}: a document has no stock that an earlier run left; grind this job with beltgrind run, and import "
+            "its result",
+            key="stock.left_by",
+        )
     from_job(stock, stocks.KEYS, {"stock": data})
     if data["kind"] == "mesh":
         stock.File = data["file"]

@@ -155,6 +155,18 @@ def attempt(
     context: core.RunContext | None = None,
 ) -> Tried:
     """Lays passes on a job (validated, in its time) and plans them roughly. Raises InputError, Cancelled."""
+    return attempted(data, move, settings, fidelity, zones, context)[0]
+
+
+def attempted(
+    data: Json,
+    move: Move,
+    settings: Json,
+    fidelity: Fidelity,
+    zones: Zones | None = None,
+    context: core.RunContext | None = None,
+) -> tuple[Tried, rounds.Plan]:
+    """As ``attempt``, with the rough plan itself."""
     context = context or core.RunContext()
     change, machine, wanted = move
     data = with_machine(data, machine, wanted, settings)
@@ -164,7 +176,7 @@ def attempt(
     job = _coarser(rounds.settled(with_path(data, laid), context), laid["area_mm2"], fidelity)
     quick = {"rounds": fidelity.rounds, "check": False, "levels": 0}
     plan = rounds.plan(job, {**settings, **quick}, context.part(0.2, 1.0))
-    return _seen(move[0], machine, wanted, laid, plan, settings)
+    return _seen(move[0], machine, wanted, laid, plan, settings), plan
 
 
 def expected(job: Json, context: core.RunContext | None = None) -> float:
@@ -331,13 +343,13 @@ def _gentler(plan: rounds.Plan) -> tuple[float, float]:
     as fast as the robot can, the rest to be ground as slowly as it may."""
     field, alpha, most = plan.after.field, force_exponent(plan.after.job), _most(plan)
     lower, upper = verdicts.limits(plan.after.job, field)
-    stock, height = (np.asarray(a, dtype=float) for a in (field.stock_height, field.height))
-    areas = np.asarray(field.areas, dtype=float)
-    deep = np.where(height < lower, stock - height, 0.0)
+    height, removed = np.asarray(field.height, dtype=float), _removed(plan)
+    areas, begun = np.asarray(field.areas, dtype=float), height + removed
+    deep = np.where(height < lower, removed, 0.0)
 
     def within(factor: float) -> float:
         less = factor**alpha
-        inside = (deep * less <= stock - lower) & (most * less >= stock - upper)
+        inside = (deep * less <= begun - lower) & (most * less >= begun - upper)
         return float(areas[inside].sum() / areas.sum())
 
     tried = np.geomspace(LEAST_FORCE, 1.0, FORCES)
@@ -348,13 +360,19 @@ def _gentler(plan: rounds.Plan) -> tuple[float, float]:
 
 def _most(plan: rounds.Plan) -> Floats:
     """(samples,) mm that is removed at the least feed and the greatest force."""
-    influence = known(plan.after.influence)
     slowest, _ = plan.commands.feed_range
     _, strongest = plan.commands.force_range
     more = (plan.new / slowest) * (strongest / plan.factors)  # of each command, than it removes now
     more[plan.commands.kept] = 1.0
-    motions = np.repeat(np.arange(len(influence)), np.diff(influence.first).astype(int))
-    depth = influence.depth * more[plan.commands.group][motions]
+    return _removed(plan, more[plan.commands.group])
+
+
+def _removed(plan: rounds.Plan, more: Floats | None = None) -> Floats:
+    """(samples,) mm that the programs remove; or ``more`` times as much, (motions,)."""
+    influence = known(plan.after.influence)
+    depth = np.asarray(influence.depth, dtype=float)
+    if more is not None:
+        depth = depth * np.repeat(more, np.diff(influence.first).astype(int))
     sample, samples = influence.sample.astype(int), len(plan.after.field.height)
     return np.bincount(sample, depth, samples).astype(float)
 
@@ -364,7 +382,7 @@ def _repeats(plan: rounds.Plan, now: int) -> tuple[float, int]:
     so that most of it is)."""
     field, most = plan.after.field, _most(plan)
     lower, upper = verdicts.limits(plan.after.job, field)
-    needed = np.asarray(field.stock_height, dtype=float) - upper
+    needed = np.asarray(field.height, dtype=float) + _removed(plan) - upper
     areas = np.asarray(field.areas, dtype=float)
     left = (most > 0.0) & (most < needed) & (np.asarray(field.flags) & core.MISSED == 0)
     if not left.any():

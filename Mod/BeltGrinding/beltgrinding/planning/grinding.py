@@ -52,7 +52,7 @@ def grind(
     Returns a ``Ground``. Raises InputError, Cancelled.
     """
     context = context or core.RunContext()
-    planned = _with_forces(typed(job), rounds.validate(settings or {}))
+    planned = with_forces(typed(job), rounds.validate(settings or {}))
     data, settings = rounds.in_time(job, planned)
     first = raster_path.validate(raster_settings or {})
     if search is None:
@@ -93,7 +93,8 @@ def _planned(
     return Ground(wanted, laid, plan, tried)
 
 
-def _with_forces(job: Job, settings: Json) -> dict[str, Any]:
+def with_forces(job: Job, settings: Json) -> dict[str, Any]:
+    """A plan's settings, validated, with the least force that they take where they give none."""
     settings = dict(settings)
     machine = job.belt_machine
     asked = (

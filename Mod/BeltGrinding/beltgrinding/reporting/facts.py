@@ -57,7 +57,9 @@ def part(content: Content, words: Language) -> list[Any]:
         low, high = shape.extents()
         size = " × ".join(words.number(b - a, 1) for a, b in zip(low, high))
         rows.append((words("Size of the part"), f"{size} mm"))
-    if stock["kind"] == "allowance":
+    if "left_by" in stock:
+        text = words("what an earlier run left ({file})", file=stock["left_by"])
+    elif stock["kind"] == "allowance":
         text = words("{mm} mm everywhere", mm=words.number(stock["allowance_mm"]))
     else:
         kind = words("another solid") if stock["kind"] == "solid" else words("a mesh (scan)")

@@ -83,5 +83,6 @@ def as_stock(
         "quaternion_wxyz": frames.to_quaternions(matrix[None, :3, :3])[0].tolist(),
     }
     stock = {**job["stock"], "kind": "mesh", "file": str(path), "unit_mm": float(unit_mm)}
-    stock.pop("brep", None)
+    for key in ("brep", "left_by"):
+        stock.pop(key, None)
     return {**job, "stock": {**stock, "placement": placement}}, found

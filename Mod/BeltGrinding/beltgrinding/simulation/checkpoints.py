@@ -44,7 +44,8 @@ class RunCheckpoints:
         if self._most < 1.0:
             return
         arrays = [np.asarray(getattr(field, name)) for name in OF_FIELD]
-        self._key = kept.digest(arrays, field.spacing, field.depth, settings, recorded)
+        left = dict(field.finish or {})  # by an earlier run
+        self._key = kept.digest(arrays, left, field.spacing, field.depth, settings, recorded)
         self._before = kept.find(STAGE, self._key) or []
 
     def next(self) -> core.Checkpoints | None:

@@ -116,7 +116,7 @@ def _by_name(slim: Json) -> dict[str, Any]:
     return {
         **slim,
         "design": named(slim["design"]),
-        "stock": named(slim["stock"]),
+        "stock": named(named(slim["stock"]), "left_by"),
         "programs": [named(named(one), "values") for one in slim["programs"]],
         "cell": {**slim["cell"], "bodies": [named(one) for one in slim["cell"]["bodies"]]},
         "belt_machine": {**slim["belt_machine"], "compliance": compliance},

@@ -144,7 +144,7 @@ def moved(job: Json, before: str, after: str) -> Json:
     return {
         **job,
         "design": named(job["design"]),
-        "stock": named(job["stock"]),
+        "stock": named(named(job["stock"]), "left_by"),
         "programs": [named(named(one), "values") for one in job["programs"]],
         "cell": {**job["cell"], "bodies": [named(one) for one in job["cell"]["bodies"]]},
         "belt_machine": {

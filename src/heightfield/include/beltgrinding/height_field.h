@@ -62,7 +62,7 @@ struct HeatTrace {
 /// What finish the passes over each sample have left. All arrays have one value per sample, or are
 /// empty: not computed.
 struct FinishTrace {
-    static constexpr std::uint32_t kNever = 0xFFFFFFFF;  ///< no pass
+    static constexpr std::uint32_t kNever = 0xFFFFFFFF;  ///< no pass of this run
     static constexpr float kMostUnknown = 0.05F;         ///< of `unknown`, up to which Ra is known
     /// What the last pass had that no measurement had; what is told first of several.
     enum Outside : std::uint8_t {
@@ -79,7 +79,8 @@ struct FinishTrace {
                                   ///< scratched along; 0: no pass
     std::vector<float> crossing;  ///< rad, [0, pi/2], between the last two passes' lays; NaN: none
     std::vector<std::uint32_t> passes;  ///< counted
-    std::vector<std::uint32_t> motion;  ///< of the last pass, numbered as in a RemovalTrace; kNever
+    std::vector<std::uint32_t> motion;  ///< of the last pass, numbered as in a RemovalTrace;
+                                        ///< kNever: no pass, or an earlier run's
     std::vector<std::uint8_t> outside;  ///< an Outside
 
     /// Nothing is known.

@@ -35,6 +35,13 @@ StockReport apply_allowance(HeightField& field, double allowance);
 /// another count than the field's.
 StockReport add_stock(HeightField& field, const std::vector<double>& thickness);
 
+/// Begins with what an earlier run of the same design left: its heights, linear between its
+/// samples, its flags and, if `finish` is wanted, its finish without the motions, unknown where it
+/// has none. The samplings may differ. Throws InputError where more than a few samples have none of
+/// the same face near.
+StockReport apply_left(HeightField& field, const HeightField& left, bool finish = false,
+                       const RunContext& context = {});
+
 /// Intersects every normal ray with the mesh (outward and inward, Embree) and sets heights and
 /// flags: a missed ray keeps height 0 and is flagged, never dropped. Throws InputError when the
 /// mesh is empty, holds NaN, or is so far from the field that hardly a ray can hit (wrong unit or

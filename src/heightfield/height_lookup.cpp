@@ -1,4 +1,4 @@
-#include "height_lookup.h"
+#include "heightfield/height_lookup.h"
 
 #include <algorithm>
 #include <cmath>

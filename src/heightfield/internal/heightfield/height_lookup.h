@@ -1,6 +1,6 @@
 #pragma once
 
-// Private to this room: the height of a field between its samples.
+// The height of a field between its samples.
 
 #include <cstdint>
 #include <optional>

@@ -35,6 +35,7 @@ NAMES = {
     "robot.program": "RobotProgram",
     "finish.model": "FinishModel",
     "finish.model.ranges": "FinishRanges",
+    "inspection.sections": "InspectedSection",
     "inspection.zones": "Zone",
     "inspection.zones.finish": "ZoneFinish",
     "cell.bodies": "Body",

@@ -122,6 +122,20 @@ def test_the_blade_with_fillet_and_edges():
 
 @pytest.mark.slow
 @pytest.mark.freecad(window=True, fresh=True)
+def test_the_edges_of_a_blade():
+    prepared()
+    menu("Example: edges of a compressor blade")
+    ground((0.85, -0.6, -0.35))
+    press("OK")
+    menu("Verdict")
+    wait(lambda: field("sections").rowCount() == 8)
+    told = [field("sections").item(0, k).text() for k in range(4)]
+    assert told[:3] == ["mid span: chord", "39.999", "40.199"]
+    assert 39.95 < float(told[3]) < 40.05
+
+
+@pytest.mark.slow
+@pytest.mark.freecad(window=True, fresh=True)
 def test_the_knife():
     prepared()
     menu("Example: chef's knife")

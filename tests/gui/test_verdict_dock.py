@@ -8,6 +8,7 @@ import FreeCAD
 import FreeCADGui as Gui
 
 from beltgrinding.gui.docks import verdict_dock
+from beltgrinding.objects import api
 from support.hands import field, menu, prepare, press, screenshot, settle, wait
 
 pytestmark = pytest.mark.freecad(window=True)
@@ -119,6 +120,14 @@ def test_the_verdict_leads_to_the_cluster_and_to_the_line():
     settle()
     assert not job.Zones and verdict.Overall == "fail"
     wait(lambda: clusters.rowCount() == len(found["clusters"]))
+    middle = {"name": "middle", "point_mm": list(verdict.WorstPoint), "normal": [1, 0, 0]}
+    api.set_sections(job, [middle])
+    sections = field("sections")
+    wait(lambda: sections.rowCount() == 4)
+    assert sections.item(0, 0).text() == "middle: chord"
+    assert sections.item(0, 3).text() == "not all around"
+    api.set_sections(job, [])
+    wait(lambda: not sections.isVisible())
     menu("Tolerance zones...")
     press("Add")
     press("Cancel")

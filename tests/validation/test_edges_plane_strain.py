@@ -96,6 +96,7 @@ def edge_of(points, heights):
         "normal": normals / np.linalg.norm(normals, axis=1)[:, None],
         "ray": normals / np.linalg.norm(normals, axis=1)[:, None],
         "height": heights,
+        "stock_height": heights,
     }
     (edge,) = edge_profile.edges({"normal": [0.0, 1.0, 0.0], "pieces": [piece]})
     return edge

@@ -15,7 +15,7 @@ from beltgrinding.programs.registry import read_program
 ROOT = Path(__file__).resolve().parents[2]
 
 
-EXAMPLES = ("tap", "tap_belt", "vane", "knife")
+EXAMPLES = ("tap", "tap_belt", "vane", "edges", "knife")
 
 
 @pytest.fixture(scope="module")
@@ -95,6 +95,25 @@ def test_the_wheel_wraps_round_the_blades_leading_edge(made):
     sides = sorted(shares.values())[-2:]
     assert sides[0] > 0.88  # of pressure and suction side
     assert min(shares.values()) < 0.4  # the leading edge
+
+
+@pytest.mark.slow
+def test_both_edges_of_a_blade_are_ground_to_their_profile(made):
+    _, kinds, verdict = ground(made / "edges")
+    assert not {"collision", "unreached", "not_converged"} & set(kinds)
+    (told,) = verdict["sections"]
+    design, stock, left = (told[name] for name in ("design", "stock", "ground"))
+    for edge, radius in (("leading", 0.2), ("trailing", 0.15)):
+        assert design[edge]["radius_mm"] == pytest.approx(radius, abs=2e-3)
+        assert stock[edge]["radius_mm"] == pytest.approx(radius + 0.1, abs=2e-3)
+        before, after = (one[edge]["thicknesses_mm"] for one in (stock, left))
+        assert after[0] < before[0] - 0.03
+    assert design["chord_mm"] == pytest.approx(40.0, abs=2e-3)
+    assert stock["chord_mm"] == pytest.approx(40.2, abs=2e-3)
+    assert left["chord_mm"] == pytest.approx(40.0, abs=0.05)
+    assert left["thickness_mm"] == pytest.approx(stock["thickness_mm"], abs=1e-5)  # untouched
+    worst = min(verdict["clusters"], key=lambda one: one["worst"]["value_mm"])
+    assert worst["side"] == "below" and worst["centroid_mm"][2] > 27.0  # at the tip
 
 
 @pytest.mark.slow

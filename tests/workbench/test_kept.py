@@ -108,7 +108,8 @@ def allowance_job(folder):
             {"file": str(folder / "pass.csv")},
         ],
         "inspection": {
-            "zones": [{"name": "rim", "faces": [box()[1]], "tolerance_mm": [-0.1, 0.1]}]
+            "zones": [{"name": "rim", "faces": [box()[1]], "tolerance_mm": [-0.1, 0.1]}],
+            "sections": [{"name": "middle", "point_mm": [1, 2, 0], "normal": [1, 0, 0]}],
         },
     }
 
@@ -258,6 +259,11 @@ VALUES = {
     "programs.0.values": lambda _: {},
     "inspection.zones.0.name": lambda _: "another",
     "inspection.zones.0.faces": lambda _: [],
+    "inspection.sections.0.name": lambda _: "another",
+    "inspection.sections.0.point_mm": lambda _: [1.0, 2.0, 3.0],
+    "inspection.sections.0.normal": lambda _: [0.0, 1.0, 0.0],
+    "inspection.sections.0.leading": lambda _: [1.0, 0.0, 0.0],
+    "inspection.sections.0.edge_distances_mm": lambda _: [0.5, 1.0],
 }
 NUMBERS = {  # of arrays
     "quaternion_wxyz": [0.99875026, 0.0, 0.0, 0.04997917],

@@ -217,10 +217,12 @@ def test_the_verdict_tells_the_line_that_gouged_and_the_zones(tmp_path):
     job["belt_machine"]["force_N"] = 120
     job["inspection"] = {
         "zones": [{"name": 'rim <i>"', "faces": [1], "tolerance_mm": [-0.02, 0.3]}],
+        "sections": [{"name": "mid <b>", "point_mm": [30, 0, 0], "normal": [1, 0, 0]}],
     }
     result = beltgrinding.run(job)
     beltgrinding.report(result, tmp_path / "r.html")
     page = Page((tmp_path / "r.html").read_text())
+    assert "Section mid <b>" in page.text and page.text.count("not all around") >= 6  # a flat face
     assert 'rim <i>"' in page.text and "−0.020 … +0.300 mm" in page.text
     cluster = result.verdict["clusters"][0]
     assert cluster["side"] == "below" and "line 71 (" in page.text

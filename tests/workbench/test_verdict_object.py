@@ -60,6 +60,23 @@ def test_the_verdict_follows_result_zones_and_tolerance():
     beltgrinding.set_zones(job, [])
     assert "Invalid" not in job.State
 
+    # The figures of sections, of the faces' outline as far as it goes; another result is not asked for.
+    asked = {"name": "across", "point_mm": [0, 0, 0], "normal": [1, 0, 0]}
+    for normal in ([1, 0], "x"):
+        try:
+            beltgrinding.set_sections(job, [{**asked, "normal": normal}])
+            raise AssertionError(normal)
+        except InputError:
+            assert not job.Sections
+    beltgrinding.set_sections(job, [{**asked, "point_mm": [20, 0, 0]}])
+    (told,) = verdict.Proxy.data(verdict)["sections"]
+    assert told["ground"]["leading"]["state"] == "open" and not verdict.OutOfDate
+    beltgrinding.set_sections(job, [{**asked, "point_mm": [900, 0, 0]}])
+    assert verdict.Proxy.data(verdict)["sections"][0]["ground"] is None
+    assert "misses the faces" in verdict.Notes[-1]
+    beltgrinding.set_sections(job, [])
+    assert "sections" not in verdict.Proxy.data(verdict)
+
     # A simulation by zones keeps its verdict; the job's file has them, and what was not resolved.
     beltgrinding.set_zones(job, [{"name": "top", "faces": [6], "tolerance_mm": [-0.1, 0.25]}])
     doc.RobotPath.Problems = ["pass.csv:3: unknown", "pass.csv:4: unknown"]

@@ -11,27 +11,19 @@ both sides of a sharp edge were ground, the profile ends where they cross.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
 from ..base.kinds import Array, Floats, Json
 from ..engine import InputError, core
+from . import profile
 
 LARGEST = 3.0  # mm, radius of an edge's design unless told otherwise
 LEAST_TURN = math.radians(30.0)
-JOINED = (
-    1e-3  # mm between pieces that meet; neighbours that are sampled apart: of the pieces' own steps
-)
-STEPS = 0.75
 REACH = 1.0  # of the edge's own length, on both sides of it
 LEAST_REACH = 1.0  # mm
-MIDDLE = (0.25, 0.75)  # of the turning, on which the circle is fitted
-LEAST_POINTS = 4
-ROUND = 0.03  # of the radius: a profile that is further off the circle is no arc
-ROUNDS = 20  # of Gauss and Newton
-SHARP = 1e-3  # mm: a smaller radius is none
 STATIONS = 24  # sections of an edge zone
 NEIGHBOURS = 2.0  # radii of the zone within which normals tell an edge's direction
 FLAT = 1e-3  # a smaller share of the normals' spread: no edge
@@ -43,9 +35,9 @@ def edges(section: Json, largest: float = LARGEST) -> list[dict[str, Any]]:
     square of the fit; ``chord_loss_mm``, None where stock was missed; ``faces`` from 1.
     """
     normal = np.asarray(section["normal"], dtype=float)
-    axes = np.column_stack(_axes(normal))
+    axes = np.column_stack(profile.axes(normal))
     found = []
-    for chain in _chains(section["pieces"]):
+    for chain in profile.chains(section["pieces"]):
         found += _edges_of(chain, axes, largest)
     return found
 
@@ -83,7 +75,7 @@ def of_zone(
             continue  # at the very end of the faces, which the plane touches
         here = [
             (float(np.linalg.norm(np.asarray(edge["point"]) - points[k])), edge)
-            for edge in edges(cut, max(radius, SHARP))
+            for edge in edges(cut, max(radius, profile.SHARP))
         ]
         if here and min(here, key=lambda one: one[0])[0] < NEIGHBOURS * radius:
             found.append(min(here, key=lambda one: one[0])[1])
@@ -115,68 +107,6 @@ def _spread_out(points: Floats, count: int) -> list[int]:
     return chosen
 
 
-def _axes(normal: Floats) -> tuple[Floats, Floats]:
-    """Two unit vectors of a plane, so that first x second is its ``normal``."""
-    first = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
-    first /= np.linalg.norm(first)
-    return first, np.cross(normal, first)
-
-
-def _chains(pieces: Iterable[Json]) -> list[dict[str, Any]]:
-    """Pieces that meet end to end, joined: dicts of points (n, 3), normals (n, 3), rays (n, 3), height (n,), face (n,)."""
-    parts = []
-    for piece in pieces:
-        step = np.median(np.linalg.norm(np.diff(piece["point"], axis=0), axis=1))
-        parts.append(
-            {
-                "points": piece["point"],
-                "normals": piece["normal"],
-                "rays": piece["ray"],
-                "height": piece["height"],
-                "face": np.full(len(piece["s"]), piece["face"]),
-                "reach": max(JOINED, STEPS * step),
-                "closed": piece["closed"],
-            }
-        )
-    chains = []
-    while parts:
-        chain = parts.pop(0)
-        while not chain["closed"]:  # what begins where it ends, and what ends where it begins
-            after = _nearest(chain["points"][-1], [one["points"][0] for one in parts])
-            before = _nearest(chain["points"][0], [one["points"][-1] for one in parts])
-            ring = np.linalg.norm(chain["points"][0] - chain["points"][-1]) < chain["reach"]
-            if after[1] < chain["reach"]:
-                chain = _joined(chain, parts.pop(after[0]))
-            elif before[1] < chain["reach"]:
-                chain = _joined(parts.pop(before[0]), chain)
-            elif ring and len(chain["points"]) > 2:
-                chain["closed"] = True
-            else:
-                break
-        chains.append(chain)
-    return chains
-
-
-def _nearest(point: Floats, others: Sequence[Floats]) -> tuple[int, float]:
-    """(number of the nearest, its distance) among points that are no closed piece's."""
-    if not others:
-        return 0, math.inf
-    distance = np.linalg.norm(np.array(others) - point, axis=1)
-    k = int(np.argmin(distance))
-    return k, float(distance[k])
-
-
-def _joined(one: Json, other: Json) -> dict[str, Any]:
-    return {
-        **{
-            name: np.concatenate([one[name], other[name]])
-            for name in ("points", "normals", "rays", "height", "face")
-        },
-        "reach": max(one["reach"], other["reach"]),
-        "closed": False,
-    }
-
-
 def _edges_of(chain: Json, axes: Floats, largest: float) -> list[dict[str, Any]]:
     points, normals = chain["points"] @ axes, chain["normals"] @ axes
     rays = chain["rays"] @ axes
@@ -194,7 +124,7 @@ def _edges_of(chain: Json, axes: Floats, largest: float) -> list[dict[str, Any]]
         height = np.concatenate([height, height])
         face, whole = np.concatenate([face, face]), np.concatenate([whole, whole])
     step = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    turn = _angle(normals[:-1], normals[1:])
+    turn = profile.angle(normals[:-1], normals[1:])
     ways = points[1:] - points[:-1]
     # Outwards the normal turns with the way: its change points along it.
     convex = np.sign(((normals[1:] - normals[:-1]) * ways).sum(axis=1))
@@ -225,9 +155,9 @@ def _edges_of(chain: Json, axes: Floats, largest: float) -> list[dict[str, Any]]
             "faces": sorted({int(number) + 1 for number in face[a : b + 1]}),
         }
         if not np.isnan(ground).any():
-            ground = _without_loops(ground)
+            ground = profile.without_loops(ground)
             one["chord_loss_mm"] = float(points[tip] @ bisector - (ground @ bisector).max())
-            one["radius_mm"], one["residual_mm"] = _radius(ground, normals[a], normals[b])
+            one["radius_mm"], one["residual_mm"] = profile.radius(ground, normals[a], normals[b])
         found.append(one)
     return found
 
@@ -243,84 +173,6 @@ def _at_corners(points: Floats, normals: Floats, apart: Array) -> Floats:
     return signs
 
 
-def _angle(one: Floats, other: Floats) -> Floats:
-    cross = one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]
-    return np.abs(np.arctan2(cross, (one * other).sum(axis=1)))
-
-
 def _runs(marked: Array) -> list[tuple[int, int]]:
     edge = np.flatnonzero(np.diff(np.concatenate([[0], marked.astype(int), [0]])))
     return list(zip(edge[::2], edge[1::2]))
-
-
-def _without_loops(line: Floats) -> Floats:
-    """A polyline (n, 2) without the loops in which it crosses itself."""
-    i = 0
-    while i + 3 < len(line):
-        a, b = line[i], line[i + 1]
-        starts, ends = line[i + 2 : -1], line[i + 3 :]
-        way, others = b - a, ends - starts
-        crossed = way[0] * others[:, 1] - way[1] * others[:, 0]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            offset = starts - a
-            t = (offset[:, 0] * others[:, 1] - offset[:, 1] * others[:, 0]) / crossed
-            u = (offset[:, 0] * way[1] - offset[:, 1] * way[0]) / crossed
-        met = np.flatnonzero((t > 0) & (t <= 1) & (u >= 0) & (u < 1))
-        if len(met):
-            k = int(met[-1])
-            line = np.concatenate([line[: i + 1], [a + t[k] * way], line[i + 3 + k :]])
-        i += 1
-    return line
-
-
-def _radius(line: Floats, first: Floats, last: Floats) -> tuple[float | None, float | None]:
-    """(radius, root mean square of what the points are off) of a ground profile between two sides of the
-    given normals; (0.0, None): sharp, (None, None): it does not turn, (None, ...): it is no arc."""
-    ways = np.diff(line, axis=0)
-    length = np.linalg.norm(ways, axis=1)
-    keep = length > 1e-7
-    line = np.concatenate([line[:1], line[1:][keep]])
-    ways = ways[keep] / length[keep, None]
-    if len(ways) < 2:
-        return None, None
-    # The way's direction goes with the normal's: from the first side's to the last's.
-    sense = np.sign(first[0] * last[1] - first[1] * last[0]) or 1.0
-    whole = float(_angle(first[None], last[None])[0])
-    start = -np.array([-first[1], first[0]]) if sense < 0 else np.array([-first[1], first[0]])
-    turned = sense * np.arctan2(
-        start[0] * ways[:, 1] - start[1] * ways[:, 0], (ways * start).sum(axis=1)
-    )
-    if not whole > 0:
-        return None, None
-    inside = np.flatnonzero((turned > MIDDLE[0] * whole) & (turned < MIDDLE[1] * whole))
-    if not len(inside):
-        return 0.0, None  # from one side to the other without anything between
-    points = line[inside[0] : inside[-1] + 2]
-    if len(points) < LEAST_POINTS:
-        arc = np.linalg.norm(np.diff(points, axis=0), axis=1).sum()
-        radius = float(arc / ((MIDDLE[1] - MIDDLE[0]) * whole))
-        return (radius if radius > SHARP else 0.0), None
-    radius, residual = _circle(points)
-    return (radius if residual < ROUND * radius else None), residual
-
-
-def _circle(points: Floats) -> tuple[float, float]:
-    """(radius, root mean square of the distances) of the circle that fits points (n, 2) best."""
-    middle = points.mean(axis=0)
-    p = points - middle
-    solved, *_ = np.linalg.lstsq(
-        np.column_stack([2.0 * p, np.ones(len(p))]), (p**2).sum(axis=1), rcond=None
-    )
-    centre, radius = solved[:2], math.sqrt(max(solved[2] + solved[:2] @ solved[:2], 0.0))
-    for _ in range(ROUNDS):  # from the algebraic circle, which is too small on short arcs
-        away = p - centre
-        distance = np.linalg.norm(away, axis=1)
-        if not (distance > 0).all():
-            break
-        matrix = np.column_stack([-away / distance[:, None], -np.ones(len(p))])
-        change, *_ = np.linalg.lstsq(matrix, radius - distance, rcond=None)
-        centre, radius = centre + change[:2], radius + float(change[2])
-        if np.abs(change).max() < 1e-9:
-            break
-    residual = float(np.sqrt(np.mean((np.linalg.norm(p - centre, axis=1) - radius) ** 2)))
-    return abs(radius), residual

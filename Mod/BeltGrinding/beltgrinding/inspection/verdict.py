@@ -23,6 +23,7 @@ from . import edge_profile
 from . import finish as finishes
 from . import finish_zones
 from . import heat as heats
+from . import section_figures
 from .verdict_text import text
 
 if TYPE_CHECKING:
@@ -114,6 +115,7 @@ def verdict(
     kinds = [event["kind"] for event in events]
     heat = heats.figures(job, field, motions)
     finish = finishes.figures(job, field, motions)
+    sections = section_figures.of_sections(job, field, notes)
     return {
         "format": FORMAT,
         "resolution": resolution.mode(job),
@@ -135,6 +137,7 @@ def verdict(
                 ("below", "above"), found["cluster_counts"], found["cluster_areas"]
             )
         },
+        **({"sections": sections} if sections else {}),
         **({"heat": heat} if heat is not None else {}),
         **({"finish": finish} if finish is not None else {}),
         "programs": _programs(job, motions),

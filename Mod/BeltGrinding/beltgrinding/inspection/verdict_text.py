@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..base.kinds import Json
-from . import finish, finish_zones, heat
+from . import finish, finish_zones, heat, section_figures
 
 
 def text(verdict: Json) -> str:
@@ -44,6 +44,8 @@ def text(verdict: Json) -> str:
             )
     lines += [_finish(zone) for zone in verdict["zones"] if zone.get("finish")]
     lines += [_edge(zone) for zone in verdict["zones"] if zone.get("edge")]
+    for section in verdict.get("sections", ()):
+        lines += _section(section)
     for cluster in verdict["clusters"][:3]:
         lines.append(f"  {cluster['number']}. {_told(cluster, verdict['programs'])}")
     if verdict.get("heat"):
@@ -92,6 +94,21 @@ def _edge(zone: Json) -> str:
     if not loss:
         return told + "not known"
     return told + f"{loss['mean']:.3f} mm on the mean, {loss['max']:.3f} mm at most"
+
+
+def _section(section: Json) -> list[str]:
+    """A section's figures of the design, before and after grinding, a line each."""
+    lines = [f"  section '{section['name']}', mm: designed, before, after"]
+    rows = list(section_figures.rows(section))
+    if not rows:
+        return [f"  section '{section['name']}': not known"]
+    for key, edge, distance, cells in rows:
+        what = {"chord_mm": "chord", "thickness_mm": "greatest thickness", "radius_mm": "radius"}
+        name = what.get(key, f"thickness at {distance:g}" if distance is not None else "")
+        name = name if edge is None else f"{edge} edge, {name}"
+        told = ", ".join(f"{c:.3f}" if isinstance(c, float) else c.replace("_", " ") for c in cells)
+        lines.append(f"    {name}: {told}")
+    return lines
 
 
 def _told(cluster: Json, programs: Sequence[Json]) -> str:

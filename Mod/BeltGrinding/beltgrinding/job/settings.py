@@ -494,12 +494,24 @@ class Zone:
 
 
 @dataclass(frozen=True, kw_only=True)
+class InspectedSection:
+    """``inspection.sections`` of a job."""
+
+    name: str
+    point_mm: tuple[float, float, float]
+    normal: tuple[float, float, float]
+    leading: tuple[float, float, float] | None = None
+    edge_distances_mm: tuple[float, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
 class Inspection:
     """``inspection`` of a job."""
 
     tolerance_mm: tuple[float, float]
     colour_limit_mm: float
     zones: tuple[Zone, ...]
+    sections: tuple[InspectedSection, ...]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -24,6 +24,7 @@ DOCUMENT_FUNCTIONS = (
     "make_deviation",
     "make_section",
     "make_verdict",
+    "set_sections",
     "set_zones",
     "make_figures",
     "write_report",

@@ -17,6 +17,7 @@ from .inspection import (
     make_ground_mesh,
     make_section,
     make_verdict,
+    set_sections,
     set_zones,
 )
 from .kinds import DocumentObject

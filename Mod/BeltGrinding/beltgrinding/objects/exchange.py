@@ -14,7 +14,7 @@ from ..base import schemas
 from ..base.files import cannot_be_written, write_whole
 from ..base.kinds import Json
 from ..engine import InputError
-from ..examples import blade, knife, tap, tap_belt, vane
+from ..examples import blade, edges, knife, tap, tap_belt, vane
 from ..job import load as jobs, workpiece
 from ..job.poses import listed_poses
 from ..programs import given
@@ -79,7 +79,14 @@ def open_job(doc: Document, path: Path | str) -> DocumentObject:
         raise
 
 
-EXAMPLES = {"blade": blade, "tap": tap, "tap_belt": tap_belt, "vane": vane, "knife": knife}
+EXAMPLES = {
+    "blade": blade,
+    "tap": tap,
+    "tap_belt": tap_belt,
+    "vane": vane,
+    "edges": edges,
+    "knife": knife,
+}
 
 
 def open_example(folder: Path | str, name: str = "blade") -> DocumentObject:

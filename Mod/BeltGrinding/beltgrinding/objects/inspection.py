@@ -72,6 +72,14 @@ def set_zones(job: DocumentObject, zones: Sequence[Json]) -> None:
     job.Document.recompute()
 
 
+def set_sections(job: DocumentObject, sections: Sequence[Json]) -> None:
+    """Gives a job sections of which its verdict tells chord, thickness and edge radii: a list of dicts as the key
+    inspection.sections of a job file (docs/section.md).
+    """
+    job_data.set_sections(job, sections)
+    job.Document.recompute()
+
+
 def make_section(
     job: DocumentObject,
     point: Point | None = None,

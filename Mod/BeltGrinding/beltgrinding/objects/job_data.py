@@ -31,6 +31,7 @@ KEYS = (
     Key("ToleranceUpper", "Distance", "Tolerance", "inspection.tolerance_mm.1"),
     Key("ColourLimit", "Length", "Tolerance", "inspection.colour_limit_mm"),
     Key("Zones", "JSON", "Tolerance", "inspection.zones"),
+    Key("Sections", "JSON", "Tolerance", "inspection.sections"),
     Key("Law", "Enumeration", "Law", "law.model"),
     Key("LawCoefficient", "Float", "Law", "law.coefficient_mm2_per_N"),
     Key("PressureThreshold", "Pressure", "Law", "law.pressure_threshold_MPa"),
@@ -97,6 +98,18 @@ def inspection(job: DocumentObject) -> dict[str, Any]:
     data: dict[str, Any] = {}
     to_job(job, KEYS, data)
     return data["inspection"]
+
+
+def judged_by(given: Json) -> dict[str, Any]:
+    """What a verdict takes of an ``inspection``; without sections as documents of 0.3 have it."""
+    found = {key: given.get(key, []) for key in ("tolerance_mm", "zones")}
+    return {**found, **({"sections": given["sections"]} if given.get("sections") else {})}
+
+
+def set_sections(job: DocumentObject, found: Sequence[Json]) -> None:
+    """Gives a job sections for its verdict. Raises InputError, and leaves the old ones, for wrong ones."""
+    found = schemas.checked(list(found), rule("inspection.sections")[0], "sections")
+    job.Sections = json.dumps(found, allow_nan=False) if found else ""
 
 
 def zones(job: DocumentObject) -> list[dict[str, Any]]:

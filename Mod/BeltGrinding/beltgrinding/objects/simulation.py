@@ -17,7 +17,7 @@ from ..job import resolution
 from ..job.poses import program_name
 from ..simulation import result_folder
 from . import part_scan, report_data, result_files
-from .job_data import child
+from .job_data import child, judged_by
 from .kinds import DocumentObject, Event, Field
 from .properties import Output, add_outputs
 from .proxy import Proxy
@@ -213,8 +213,9 @@ def _store_verdict(obj: DocumentObject, result: Result) -> None:
     obj.MotionPoints = [tuple(map(float, point)) for point in motions["point"]]
     obj.MotionTimes = [float(time) for time in motions.get("time", ())]
     inspection = result.judged_by()
-    kept = {key: inspection.get(key, []) for key in ("tolerance_mm", "zones")}
-    judged = {"inspection": kept, "verdict": result.verdict} if result.verdict else {}
+    judged = (
+        {"inspection": judged_by(inspection), "verdict": result.verdict} if result.verdict else {}
+    )
     obj.VerdictData = json.dumps(judged, allow_nan=False)
 
 

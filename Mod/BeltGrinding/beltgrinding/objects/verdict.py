@@ -96,22 +96,17 @@ class Verdict(Proxy):
 
 
 def _judged_by(job: DocumentObject) -> dict[str, Any]:
-    from .job_data import inspection
+    from .job_data import inspection, judged_by
 
-    return _limits(inspection(job))
-
-
-def _limits(inspection: Json) -> dict[str, Any]:
-    return {key: inspection[key] for key in ("tolerance_mm", "zones")}
+    return judged_by(inspection(job))
 
 
 def verdict_of(job: DocumentObject, simulation: DocumentObject, inspection: Json) -> dict[str, Any]:
     """The verdict that the simulation was stored with or, by other tolerances, another one."""
     stored = json.loads(simulation.VerdictData or "{}")
-    judged_by = _limits(inspection)
-    if stored.get("inspection") == judged_by:
+    if stored.get("inspection") == inspection:
         return stored["verdict"]
-    found = judge(job, simulation, judged_by)
+    found = judge(job, simulation, inspection)
     if "heat" in stored.get("verdict", {}):  # no tolerance changes it
         found["heat"] = stored["verdict"]["heat"]
     return found
@@ -165,7 +160,10 @@ def renew_events(simulation: DocumentObject, inspection: Json) -> None:
 def limits_changed(job: DocumentObject, simulation: DocumentObject) -> bool:
     """Whether the limits are others than those of the run, by which it told gouges."""
     stored = json.loads(simulation.VerdictData or "{}")
-    return bool(stored) and stored["inspection"] != _judged_by(job)
+    now = _judged_by(job)
+    return bool(stored) and any(
+        stored["inspection"][key] != now[key] for key in ("tolerance_mm", "zones")
+    )
 
 
 def judge(job: DocumentObject, simulation: DocumentObject, inspection: Json) -> dict[str, Any]:

@@ -164,7 +164,8 @@ def tolerance(
     tables = _by_face(content, words, scale)
     if verdict is not None:
         zones, faces = verdict_section.zones(verdict, words), verdict_section.faces(verdict, words)
-        tables = [zones, element("h3", words("By face")) if zones else None, faces]
+        sections = verdict_section.sections(verdict, words)
+        tables = [zones, element("h3", words("By face")) if zones else None, faces, sections]
     return section(
         words("Tolerance"),
         *tables,

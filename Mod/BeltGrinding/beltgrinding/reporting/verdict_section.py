@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..base.kinds import Json
+from ..inspection import section_figures
 from .layout import table
 from .markup import element
 
@@ -175,6 +176,43 @@ def _thickness(found: Json, words: Language) -> list[Markup] | None:
         (words("Verdict"), ""),
     ]
     return [element("h3", words("Thickness")), table(heads, rows, "list faces")]
+
+
+def sections(verdict: Json, words: Language) -> list[Any] | None:
+    """The tables of the job's sections: designed, before and after; None where it asks for none."""
+    made: list[Any] = []
+    states = {
+        "round": words("round"),
+        "sharp": words("sharp"),
+        "not_round": words("not round"),
+        "few_samples": words("too few samples"),
+        "open": words("not all around"),
+        "missed": words("stock missed"),
+        "not_known": words("not known"),
+    }
+    what = {
+        "chord_mm": words("chord"),
+        "thickness_mm": words("greatest thickness"),
+        "radius_mm": words("radius"),
+        "thicknesses_mm": words("thickness at {distance} mm"),
+    }
+    edges = {"leading": words("leading edge"), "trailing": words("trailing edge")}
+    heads = [
+        (words("Figure"), ""),
+        (words("designed, mm"), "number"),
+        (words("before, mm"), "number"),
+        (words("after, mm"), "number"),
+    ]
+    for one in verdict.get("sections", ()):
+        rows = []
+        for key, edge, distance, cells in section_figures.rows(one):
+            name = what[key].format(distance=words.figures(distance))
+            name = name if edge is None else f"{edges[edge]}: {name}"
+            told = (words.number(c, 3) if isinstance(c, float) else states[c] for c in cells)
+            rows.append((name, *told))
+        made.append(element("h3", words("Section {name}", name=one["name"])))
+        made.append(table(heads, rows, "list") if rows else element("p", words("not known")))
+    return made or None
 
 
 def finishes(verdict: Json, words: Language) -> Markup | None:

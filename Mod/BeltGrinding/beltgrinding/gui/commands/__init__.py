@@ -242,6 +242,13 @@ SUBMENUS = {
             always,
         ),
         Command(
+            "ExampleEdges",
+            "Example: edges of a compressor blade",
+            "Makes a document with a blade whose edges are ground round, measured before and after",
+            partial(files.open_example, "edges"),
+            always,
+        ),
+        Command(
             "ExampleKnife",
             "Example: chef's knife",
             "Makes a document with a knife, ground by a robot that speeds up and slows down",

@@ -97,6 +97,7 @@ LABELS = {
     "heat.partition": ("job_data", "Share into the work"),
     "heat.start_temperature_C": ("job_data", "Before grinding, °C"),
     "inspection.colour_limit_mm": ("job_data", "Colours end at"),
+    "inspection.sections": ("job_data", "Sections"),
     "inspection.tolerance_mm": ("job_data", "Tolerance"),
     "inspection.tolerance_mm.0": ("job_data", "Lower limit"),
     "inspection.tolerance_mm.1": ("job_data", "Upper limit"),

@@ -25,10 +25,18 @@ from ..scene.sight import Sight
 from ..scene.verdict_scene import VerdictScene
 from ..widgets.pose_walk import PoseTable
 from .object_dock import ObjectDock
-from .verdict_tables import cluster_rows, doubts, fill, motion_rows, region_rows, table
+from .verdict_tables import (
+    cluster_rows,
+    doubts,
+    fill,
+    motion_rows,
+    region_rows,
+    section_rows,
+    table,
+)
 
 WIDTH = 470  # pixels of the dock as it comes
-SHARES = [150, 230, 120, 160]  # pixels of its parts, one below the other
+SHARES = [150, 150, 230, 120, 160]  # pixels of its parts, one below the other
 MOST_POINTS = 2000  # of a region that passes are laid on
 AROUND = 1.5  # times a cluster's length that the camera sees
 LEAST_SEEN = 10.0  # mm
@@ -70,6 +78,7 @@ class VerdictDock(ObjectDock):
         layout.addWidget(self.figures)
         parts = QtGui.QSplitter(QtCore.Qt.Vertical)
         self.regions = table("regions", region_rows.titles())
+        self.sections = table("sections", section_rows.titles())
         self.clusters = table("clusters", cluster_rows.titles())
         self.motions = table("motions", motion_rows.titles())
         self.clusters.setToolTip(
@@ -84,6 +93,7 @@ class VerdictDock(ObjectDock):
         self.poses.hide()
         for title, widget in (
             (translate("BeltGrinding", "Zones and faces"), self.regions),
+            (translate("BeltGrinding", "Sections"), self.sections),
             (translate("BeltGrinding", "Clusters out of tolerance"), self.clusters),
             (translate("BeltGrinding", "Motions of the cluster"), self.motions),
             ("", self.poses),
@@ -133,6 +143,7 @@ class VerdictDock(ObjectDock):
         self.found = obj.Proxy.data(obj)
         for made, rows in (
             (self.regions, region_rows),
+            (self.sections, section_rows),
             (self.clusters, cluster_rows),
             (self.motions, motion_rows),
         ):
@@ -142,8 +153,9 @@ class VerdictDock(ObjectDock):
         if self.found is None:
             self.overall.setText(translate("BeltGrinding", "No result yet."))
             self.overall.setStyleSheet("")
-            for one in (self.regions, self.clusters, self.motions):
+            for one in (self.regions, self.sections, self.clusters, self.motions):
                 one.setRowCount(0)
+            self.sections.parentWidget().hide()
             self.trouble.hide()
             return self.figures.setText("")
         self.overall.setText(headline(self.found))
@@ -171,6 +183,8 @@ class VerdictDock(ObjectDock):
             (region, cells, bad) for region, cells, bad in region_rows(found, name)
         ]
         fill(self.regions, [(cells, bad) for _, cells, bad in self.shown_regions])
+        fill(self.sections, section_rows(found))
+        self.sections.parentWidget().setVisible(self.sections.rowCount() > 0)
         fill(self.clusters, cluster_rows(found, name))
         self.motions.setRowCount(0)
 
@@ -332,7 +346,7 @@ class VerdictDock(ObjectDock):
         self.overall.setText("")
         self.overall.setStyleSheet("")
         self.figures.setText("")
-        for one in (self.regions, self.clusters, self.motions):
+        for one in (self.regions, self.sections, self.clusters, self.motions):
             one.setRowCount(0)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from ...inspection import finish_zones
+from ...inspection import finish_zones, section_figures
 from ...objects.preferences import deviation_unit
 from ..common.compat import QtGui, translate
 from ..common.figures import figure, length_number
@@ -206,6 +206,47 @@ def _thickness(thick: Json) -> list[str]:
     return [word(thick["verdict"]), share, "", "", value, beyond, ""]
 
 
+def _section_titles() -> list[str]:
+    return [
+        translate("BeltGrinding", "Figure"),
+        translate("BeltGrinding", "Designed, mm"),
+        translate("BeltGrinding", "Before, mm"),
+        translate("BeltGrinding", "After, mm"),
+    ]
+
+
+def _sections(found: Json) -> list[Any]:
+    """[(texts, None)] of the sections that the job asks for."""
+    states = {
+        "round": translate("BeltGrinding", "round"),
+        "sharp": translate("BeltGrinding", "sharp"),
+        "not_round": translate("BeltGrinding", "not round"),
+        "few_samples": translate("BeltGrinding", "too few samples"),
+        "open": translate("BeltGrinding", "not all around"),
+        "missed": translate("BeltGrinding", "stock missed"),
+        "not_known": translate("BeltGrinding", "not known"),
+    }
+    what = {
+        "chord_mm": translate("BeltGrinding", "chord"),
+        "thickness_mm": translate("BeltGrinding", "greatest thickness"),
+        "radius_mm": translate("BeltGrinding", "radius"),
+        "thicknesses_mm": translate("BeltGrinding", "thickness at {} mm"),
+    }
+    edges = {
+        None: "",
+        "leading": translate("BeltGrinding", "leading edge") + ", ",
+        "trailing": translate("BeltGrinding", "trailing edge") + ", ",
+    }
+    rows: list[Any] = []
+    for one in found.get("sections", ()):
+        shown = list(section_figures.rows(one)) or [("chord_mm", None, None, ["not_known"] * 3)]
+        for key, edge, distance, cells in shown:
+            name = what[key].format(figure(distance or 0.0, "g"))
+            told = [figure(c, ".3f") if isinstance(c, float) else states[c] for c in cells]
+            rows.append(([f"{one['name']}: {edges[edge]}{name}", *told], None))
+    return rows
+
+
 def _cluster_titles() -> list[str]:
     return [
         "",
@@ -280,5 +321,6 @@ def _motions(cluster: Json, programs: Sequence[str]) -> list[Any]:
 
 
 region_rows = _Rows(_regions, _region_titles)
+section_rows = _Rows(_sections, _section_titles)
 cluster_rows = _Rows(_clusters, _cluster_titles)
 motion_rows = _Rows(_motions, _motion_titles)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from beltgrinding import cli
+from beltgrinding.cli import stages as stages_command
 from beltgrinding.engine import InputError, core
 from beltgrinding.job import load as jobs
 from beltgrinding.planning import belts, by_rules, rounds, stages, wheels
@@ -161,6 +162,14 @@ def test_a_small_wheel_grinds_what_a_large_one_cannot_enter(tmp_path, monkeypatc
     told = found.report(chooser)
     assert told["tool_changes"] == 1 and told["stages"][1]["changed"] == ["wheel"]
     json.dumps(told, allow_nan=False)
+
+
+def test_stages_of_an_earlier_plan_are_told(tmp_path):
+    for number in (1, 2, 3):
+        (tmp_path / f"stage_{number}").mkdir()
+    assert not stages_command._left_over(tmp_path, 3)
+    (note,) = stages_command._left_over(tmp_path, 2)
+    assert note.arguments["file"].endswith("stage_3")
 
 
 def test_a_region_is_the_stages_own():

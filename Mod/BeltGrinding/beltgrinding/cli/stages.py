@@ -1,6 +1,7 @@
 """Options and words of stages: wheels and belts that grind one after the other (planning/stages.py)."""
 
 import functools
+import itertools
 import json
 from pathlib import Path
 
@@ -93,6 +94,7 @@ def grind(arguments, in_turn, wanted, passes):
         arguments.messages.print_written(files.notes)
         plan.tell_checked(arguments, checked)
     arguments.messages.print_notes(staged.dropped)
+    arguments.messages.print_warnings(_left_over(out, len(written)))
     if not arguments.quiet:
         _tell(report, out)
     outcome.tell(arguments, staged.stages[-1].result, wanted["wanted_share"])
@@ -123,6 +125,23 @@ def _chooser(arguments, belts, job, first, passes, wanted, watched, context):
         lambda: watched.enough,
         context,
     )
+
+
+def _left_over(out, count):
+    """[Fact] of folders behind the last stage, which an earlier plan of more stages has written."""
+    from ..engine import core
+
+    numbers = itertools.takewhile(
+        lambda number: (out / f"stage_{number}").exists(), itertools.count(count + 1)
+    )
+    return [
+        core.Fact(
+            "planning.stage_left_over",
+            "{file}: is of an earlier plan; these stages do not need it",
+            file=str(out / f"stage_{number}"),
+        )
+        for number in numbers
+    ]
 
 
 def _check(out, arguments):

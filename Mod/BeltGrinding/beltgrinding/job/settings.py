@@ -136,7 +136,9 @@ class Belt:
 class Compliance:
     """``belt_machine.compliance`` of a job."""
 
-    model: Literal["wheel_rim", "bonded_layer", "half_space", "elastic_foundation", "surrogate", "geometric"]
+    model: Literal[
+        "wheel_rim", "bonded_layer", "half_space", "elastic_foundation", "surrogate", "geometric"
+    ]
     youngs_modulus_MPa: float
     poissons_ratio: float
     rim_thickness_mm: float

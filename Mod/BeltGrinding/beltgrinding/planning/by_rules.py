@@ -318,9 +318,10 @@ def others(one: Tried) -> list[tuple[float, Move]]:
             gentle = {"border_force_share": BORDER_FORCE, "step_over_mm": closer}
             add(shares["border"] + shares["shared"] + shares["fringe"], "border_force", **gentle)
     gain, of_force = one.gentler
-    force = max(round(of_force * one.machine["force_N"], 1), FORCE_LEAST)
-    by_hand = one.machine["control"] == "force" and not wanted["force_N"]
-    if gain > MATTERS and by_hand and force < one.machine["force_N"]:
+    machine = made(BeltMachine, one.machine)
+    force = max(round(of_force * machine.force_N, 1), FORCE_LEAST)
+    by_hand = machine.control == "force" and not wanted["force_N"]
+    if gain > MATTERS and by_hand and force < machine.force_N:
         # As likely as all that is cut too deep: it is the one thing that helps where the robot is slow everywhere.
         gentler = ("force", {**one.machine, "force_N": force}, wanted)
         found.append((max(gain, one.below), gentler))

@@ -7,8 +7,9 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from ..base.kinds import Context, Json
+from ..base.records import made
 from ..engine import core
-from ..job.settings import Job
+from ..job.settings import BeltMachine, Job
 from ..job.typed import typed
 from ..programs.force_device import of_job
 from ..raster import raster_path
@@ -83,8 +84,8 @@ def _planned(
     tried: list[dict[str, Any]],
 ) -> Ground:
     """The plan of passes that were tried, from their feeds on."""
-    wanted, force = best.wanted, best.machine["force_N"]
-    if force != data["belt_machine"]["force_N"] and not wanted["force_N"]:
+    wanted, force = best.wanted, made(BeltMachine, best.machine).force_N
+    if force != typed(data).belt_machine.force_N and not wanted["force_N"]:
         wanted = {**wanted, "force_N": force}  # so that its passes can be laid once more
     data = by_rules.with_machine(data, best.machine, wanted, settings)
     laid = by_rules.lay(data, wanted, settings, context.part(0.0, 0.1), zones)

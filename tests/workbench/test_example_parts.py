@@ -101,6 +101,8 @@ def test_the_wheel_wraps_round_the_blades_leading_edge(made):
 def test_both_edges_of_a_blade_are_ground_to_their_profile(made):
     _, kinds, verdict = ground(made / "edges")
     assert not {"collision", "unreached", "not_converged"} & set(kinds)
+    (noses,) = [zone for zone in verdict["zones"] if zone["name"] == "noses"]
+    assert 0.7 < noses["in_share"] < 0.9  # but for the root, which is left, and the tip
     (told,) = verdict["sections"]
     design, stock, left = (told[name] for name in ("design", "stock", "ground"))
     for edge, radius in (("leading", 0.2), ("trailing", 0.15)):

@@ -31,7 +31,7 @@ SLOWER = 0.8  # power of the cosine of the turn, by which the passes nearer to t
 CLEAR = 3.0  # mm over the root
 OVER = 4.0  # mm beyond the tip
 RETRACT = 20.0  # mm
-TOLERANCE = [-0.05, 0.05]  # mm, at the edges
+TOLERANCE = [-0.05, 0.05]  # mm, on the noses
 SIDES = [-0.05, 0.15]  # mm: the sides keep their stock for another wheel
 
 
@@ -119,7 +119,7 @@ def make(folder):
         "inspection": {
             "tolerance_mm": SIDES,
             "colour_limit_mm": ALLOWANCE,
-            "zones": [{"name": "edges", "edge_radius_mm": 1.0, "tolerance_mm": TOLERANCE}],
+            "zones": [{"name": "noses", "faces": [faces[0], faces[2]], "tolerance_mm": TOLERANCE}],
             "sections": [
                 {"name": "mid span", **middle, "leading": [-1, 0, 0], "edge_distances_mm": [0.5, 1]}
             ],

@@ -16,7 +16,12 @@ pytestmark = pytest.mark.freecad(window=True)
 ELSEWHERE = {"cli", "call", "studies", "hdf5", "ply", "reporting", "simulation.not_of_a_run"}
 ELSEWHERE |= {"planning.not_of_a_plan", "frames.quaternion_and_abc", "contact", "scan.no_module"}
 ELSEWHERE |= {"calibration.wear_without_job", "robot_program", "job.lay_direction"}
-ELSEWHERE |= {"gui.choose_surrogate", "job.surrogate_of_other_wheel", "planning.keep_what"}
+ELSEWHERE |= {
+    "planning.belt_law",
+    "gui.choose_surrogate",
+    "job.surrogate_of_other_wheel",
+    "planning.keep_what",
+}
 # Columns of tables, words of robots' and URDF's own files, choices of a property: what the user has to write.
 WRITTEN = {"area_mm2", "force_N", "belt_speed_m_s", "time_s", "removed_volume_mm3", "depth_mm"}
 WRITTEN |= {"length_mm", "contact_width_mm", "remaining_cut", "base_link", "tip_link", "ref_frame"}

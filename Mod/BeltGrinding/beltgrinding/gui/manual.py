@@ -18,6 +18,7 @@ from .common.icons import icon
 from .common.kinds import QtEvent, Widget
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
+CONTENTS = "index.md"
 SIZE = 960, 800  # of the window at first, pixels
 MARGIN = 40  # beside a picture, pixels: the page's own and the scroll bar
 
@@ -41,7 +42,7 @@ class ManualView(QtGui.QTextBrowser):
         return picture.scaledToWidth(width, QtCore.Qt.SmoothTransformation)
 
 
-def show_manual(page: str = "index.md") -> Widget:
+def show_manual(page: str = CONTENTS) -> Widget:
     """Opens a page of docs/ in a window, the same one each time; returns it."""
     window = Gui.getMainWindow()
     dialog = window.findChild(QtGui.QDialog, "BeltGrinding_Manual")
@@ -54,11 +55,11 @@ def show_manual(page: str = "index.md") -> Widget:
         bar = QtGui.QHBoxLayout()
         for text, action in (
             (translate("BeltGrinding", "Back"), view.backward),
-            (translate("BeltGrinding", "Contents"), view.home),
+            (translate("BeltGrinding", "Contents"), show_manual),  # home: the page that came first
         ):
             button = QtGui.QPushButton(text, dialog)
             button.setAutoDefault(False)
-            button.clicked.connect(action)
+            button.clicked.connect(lambda *_, action=action: action())
             bar.addWidget(button)
         bar.addStretch()
         column = QtGui.QVBoxLayout(dialog)

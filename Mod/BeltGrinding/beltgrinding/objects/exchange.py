@@ -161,8 +161,8 @@ def _open_stock(
     if "left_by" in data:
         raise InputError(
             "objects.left_by",
-            "{key}: a document has no stock that an earlier run left; grind this job with beltgrind run, and import "
-            "its result",
+            "{key}: a document has no stock that an earlier run left; run this job on the command line, and import its "
+            "result",
             key="stock.left_by",
         )
     from_job(stock, stocks.KEYS, {"stock": data})

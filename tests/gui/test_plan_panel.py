@@ -9,6 +9,7 @@ import FreeCADGui as Gui
 import Part
 from PySide import QtCore, QtGui
 
+import beltgrinding
 from support.planning import prepared
 from support.hands import (
     field,
@@ -180,3 +181,21 @@ def test_faces_are_ground_from_nothing_by_one_button():
     doc.undo()
     doc.recompute()
     assert [list(path.Feeds), list(path.Poses)] == before and not plan.Applied
+
+
+@pytest.mark.slow
+def test_passes_for_another_force_say_what_to_set_by_hand():
+    _, job, path = prepared()
+    plan = beltgrinding.make_plan(job, Rounds=1, Check=False)
+    for force, told in ((1.3, "1.3 N"), (0.0, ""), (float(job_force(job)), "")):
+        plan.Raster = json.dumps({"force_N": force})
+        plan.ViewObject.Proxy.doubleClicked(plan.ViewObject)
+        settle()
+        said = [one.text() for one in visible(QtGui.QLabel) if "by hand" in one.text()]
+        assert (told in said[0]) if told else not said, (force, said)
+        press("Close")
+
+
+def job_force(job):
+    machine = next(one for one in job.Group if hasattr(one, "BeltSpeed"))
+    return machine.Force.getValueAs("N").Value

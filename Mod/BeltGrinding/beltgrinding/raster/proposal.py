@@ -233,7 +233,7 @@ def _wheel(
         notes.append(
             core.Fact(
                 "raster.proposed_small",
-                "the wheel has {radius:.3g} mm radius, since larger ones run into the part beside the faces: it fits on "
+                "the wheel has {radius:.3g} mm radius, since larger ones run into the part: it fits on "
                 "{reached:.0f} % of the area, one of {larger:.3g} mm on {less:.0f} %",
                 radius=found[0],
                 reached=100.0 * (1.0 - tried[found]),

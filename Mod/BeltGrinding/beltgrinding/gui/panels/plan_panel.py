@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,7 @@ from ...objects.deviation import Deviation
 from ...objects.job_data import child
 from ..charts.feed_chart import FeedChart
 from ..common.compat import QtGui, translate
+from ..common.figures import figure
 from ..common.kinds import Widget
 from ..common.messages import error_text
 from ..common.plan_runner import PlanRunner, words
@@ -149,6 +151,19 @@ class PlanPanel(RunPanel):
         except InputError:
             return False
 
+    def _other_force(self) -> str:
+        """A line that tells the one force of passes that were planned for another than the belt machine's."""
+        from ...objects.belt_machine import BeltMachine
+
+        machine = child(self.job, BeltMachine)
+        force = json.loads(self.obj.Raster)["force_N"] if self.obj.Raster else 0.0
+        if machine is None or not force or abs(machine.Force.getValueAs("N").Value - force) < 1e-6:
+            return ""
+        told = translate(
+            "BeltGrinding", "The passes are planned for {} N: set them by hand on the belt machine."
+        )
+        return "\n" + told.format(figure(force, ".4g"))
+
     def _by_force(self) -> bool:
         from ...objects.belt_machine import BeltMachine
 
@@ -237,6 +252,7 @@ class PlanPanel(RunPanel):
                 "At {} places feed or force change faster than they may: the program's own steps, or motions that stay.",
             )
             text += "\n" + more.format(beyond)
+        text += self._other_force()
         self._say(text, obj.OutOfDate)
         self._enable()
 

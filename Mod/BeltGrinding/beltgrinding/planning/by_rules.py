@@ -214,7 +214,8 @@ def _seen(
     size = float(np.linalg.norm(looks))
     best = max(plan.rounds, key=share)
     shares = plan.why["shares"]
-    undone, repeats = _repeats(plan, wanted["repeats"])
+    removed, most = _removed(plan), _most(plan)
+    undone, repeats = _repeats(plan, wanted["repeats"], removed, most)
     return Tried(
         change=change,
         machine=machine,
@@ -230,7 +231,7 @@ def _seen(
         process_time_s=best["process_time_s"],
         undone=undone,
         repeats=repeats,
-        gentler=_gentler(plan) if one_force(settings) else (0.0, 1.0),
+        gentler=_gentler(plan, removed, most) if one_force(settings) else (0.0, 1.0),
         looks=looks / size if size > 0.1 else np.zeros(3),
     )
 
@@ -339,13 +340,13 @@ def _spares_borders(one: Tried) -> bool:
     return machine.control == "force" and machine.force_device.kind != "none"
 
 
-def _gentler(plan: rounds.Plan) -> tuple[float, float]:
+def _gentler(plan: rounds.Plan, removed: Floats, most: Floats) -> tuple[float, float]:
     """(of the area, that is in tolerance besides; with this share of the force): what is cut too deep is taken to be ground
     as fast as the robot can, the rest to be ground as slowly as it may."""
-    field, alpha, most = plan.after.field, force_exponent(plan.after.job), _most(plan)
+    field, alpha = plan.after.field, force_exponent(plan.after.job)
     lower, upper = verdicts.limits(plan.after.job, field)
-    height, removed = np.asarray(field.height, dtype=float), _removed(plan)
-    areas, begun = np.asarray(field.areas, dtype=float), height + removed
+    height, areas = (np.asarray(a, dtype=float) for a in (field.height, field.areas))
+    begun = height + removed
     deep = np.where(height < lower, removed, 0.0)
 
     def within(factor: float) -> float:
@@ -378,12 +379,12 @@ def _removed(plan: rounds.Plan, more: Floats | None = None) -> Floats:
     return np.bincount(sample, depth, samples).astype(float)
 
 
-def _repeats(plan: rounds.Plan, now: int) -> tuple[float, int]:
+def _repeats(plan: rounds.Plan, now: int, removed: Floats, most: Floats) -> tuple[float, int]:
     """(of the area, what is not done even at the least feed and the greatest force; how often the passes must be run through
     so that most of it is)."""
-    field, most = plan.after.field, _most(plan)
+    field = plan.after.field
     lower, upper = verdicts.limits(plan.after.job, field)
-    needed = np.asarray(field.height, dtype=float) + _removed(plan) - upper
+    needed = np.asarray(field.height, dtype=float) + removed - upper
     areas = np.asarray(field.areas, dtype=float)
     left = (most > 0.0) & (most < needed) & (np.asarray(field.flags) & core.MISSED == 0)
     if not left.any():

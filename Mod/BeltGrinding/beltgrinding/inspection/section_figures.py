@@ -1,6 +1,6 @@
 """What blade shops inspect of a section: chord, greatest thickness, radii of both edges, thickness near them.
 
-Each is told of three profiles: the design, the stock before, and what is ground. A profile is the outline that
+They are taken of three profiles: the design, the stock before, and what is ground. A profile is the outline that
 the plane cuts out of the sampled faces, the one nearest to the section's point.
 
 - *Chord*: the greatest distance between two points of the outline.
@@ -105,7 +105,8 @@ def of_section(
 ) -> dict[str, Any]:
     """{profile: figures} of a section (``inspection.section``) at the outline that is nearest to ``point``.
 
-    ``leading``: the direction towards the leading edge, work frame; None: the design's thicker edge leads. ``distances``: from the tips, mm, at which thicknesses are told.
+    ``leading``: the direction towards the leading edge, work frame; None: the design's thicker edge leads.
+    ``distances``: mm from the tips, where the thickness is measured.
     """
     axes = np.column_stack(profile.axes(np.asarray(section["normal"], dtype=float)))
     found = profile.chains(section["pieces"])

@@ -8,6 +8,7 @@ import copy
 import json
 import math
 import random
+import tempfile
 from functools import lru_cache
 from pathlib import Path
 
@@ -119,6 +120,9 @@ class _Maker:
 
     def stock_file(self):
         return str(PARTS / "slab.ply")
+
+    def stock_left_by(self):
+        return str(_left(self.part))
 
     def stock_brep(self):
         return (PARTS / f"{self.part}.brep").read_text()
@@ -327,7 +331,6 @@ class _Maker:
         rim = machine.setdefault("compliance", {})
         rim["rim_thickness_mm"] = wheel["radius_mm"] * dice.uniform(0.1, 0.5)
         stock = made.get("stock", {})
-        stock.pop("left_by", None)
         for name in ("file", "brep"):
             if stock.get("kind", "allowance") == "allowance" or name in stock:
                 stock.pop(name, None)
@@ -464,6 +467,20 @@ def _shape(part):
 
 def _faces(part):
     return _shape(part).face_count
+
+
+@lru_cache(maxsize=None)
+def _left(part):
+    """File of what an earlier run left on a part, about 3 mm apart: of a lasting name, so that a job stays the same."""
+    folder = Path(tempfile.gettempdir()) / "beltgrinding-left"
+    folder.mkdir(exist_ok=True)
+    if not (file := folder / f"{part}.h5").exists():
+        field = core.sample_faces(_shape(part), list(range(_faces(part))), 3.0)[0]
+        core.apply_allowance(field, 0.2)
+        with tempfile.TemporaryDirectory(dir=folder) as new:
+            field.write_hdf5(Path(new) / "field.h5")
+            (Path(new) / "field.h5").replace(file)
+    return file
 
 
 @lru_cache(maxsize=None)

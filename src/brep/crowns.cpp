@@ -8,7 +8,7 @@ namespace beltgrinding {
 namespace {
 
 // A nose that turns by more than this between two neighbours may lie between them unseen.
-constexpr double kMostTurn = 0.8;  // rad
+constexpr double kMostTurn = 0.5;  // rad
 
 }  // namespace
 

@@ -9,7 +9,7 @@ namespace beltgrinding {
 namespace {
 
 constexpr double kSliver = 0.25;  // of a cell
-constexpr double kLeast = 0.05;
+constexpr double kLeast = 0.005;
 
 }  // namespace
 

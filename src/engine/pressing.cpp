@@ -179,7 +179,12 @@ bool Pressing::find_touch(const SampleBlocks& blocks) {
     localise(blocks, travel + tool_.margin);
     map_gap(blocks, travel + tool_.margin, std::numeric_limits<double>::infinity());
     if (map_.empty() || !(map_.lowest() <= travel)) return false;
-    placed_ = std::clamp(map_.lowest(), -travel, travel);
+    // A nose that is thinner than cells: they carry its flanks beyond its crown.
+    double lowest = map_.lowest();
+    if (const double nearest = map_.nearest();
+        !tool_.flat && nearest - lowest > kDrift * tool_.margin)
+        lowest = nearest;
+    placed_ = std::clamp(lowest, -travel, travel);
     return true;
 }
 

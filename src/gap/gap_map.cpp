@@ -11,6 +11,7 @@ constexpr double kNothing = std::numeric_limits<double>::infinity();
 constexpr int kGridQuantum = 8;  // grid lengths are multiples, so that warm starts mostly fit
 constexpr double kLayer = 0.5;  // cells: samples further behind the nearest belong to another layer
 constexpr double kFlatLayer = 2.0;  // the same under a belt, which wraps slopes of up to 60 degrees
+constexpr double kMostCells = 20000.0;  // that noses may ask for: more take a second a step
 
 ContactGrid grid_across(const ContactWheel& wheel, double spacing) {
     ContactGrid grid;
@@ -24,6 +25,8 @@ ContactGrid grid_across(const ContactWheel& wheel, double spacing) {
 
 GapMap::GapMap(const ContactWheel& wheel, double spacing, double beside)
     : grid_(grid_across(wheel, spacing)),
+      noses_(spacing),
+      spacing_(spacing),
       placed_(wheel, beside),
       cells_(kLayer * std::max(grid_.ds, grid_.dy), true) {}
 
@@ -77,12 +80,32 @@ void GapMap::fit_grid(double half_length) {
     grid_.nx = 2 * ((half + kGridQuantum - 1) / kGridQuantum * kGridQuantum) + 1;
 }
 
+void GapMap::set_cells(double spacing) {
+    spacing_ = spacing;
+    grid_ = grid_across(placed_.pose().wheel(), spacing);
+    cells_.set_layer(kLayer * std::max(grid_.ds, grid_.dy));
+}
+
+void GapMap::place(const SampleBlocks& blocks, std::span<const std::uint32_t> hits,
+                   const Frame& work_from_contact, const PlacedSamples::Limits& limits) {
+    placed_.place(blocks, hits, work_from_contact, grid_, limits);
+    if (run_) return;
+    double wanted = noses_.cell(placed_, blocks);
+    const double length = 2.0 * placed_.half_length();
+    while (wanted < noses_.widest() &&
+           length * placed_.pose().wheel().width > kMostCells * wanted * wanted)
+        wanted = std::min(2.0 * wanted, noses_.widest());
+    if (wanted == spacing_) return;
+    set_cells(wanted);
+    placed_.place(blocks, hits, work_from_contact, grid_, limits);
+}
+
 void GapMap::update(const SampleBlocks& blocks, std::span<const std::uint32_t> hits,
                     const Frame& work_from_contact, double reach, double ahead, double pressable) {
     prepare(blocks);
     // Else the surface had edges where its gap is `reach`.
     const double seen = reach + cells_.whole_layer();
-    placed_.place(blocks, hits, work_from_contact, grid_, {reach, seen, ahead});
+    place(blocks, hits, work_from_contact, {reach, seen, ahead});
     removal_.start(placed_.regular().size());
     fit_grid(placed_.half_length());
     placed_.put_on(grid_);

@@ -205,6 +205,12 @@ double PlacedSamples::half_length() const {
     return half;
 }
 
+double PlacedSamples::least_gap() const {
+    double least = std::numeric_limits<double>::infinity();
+    for_gaps([&](std::size_t, float gap) { least = std::min<double>(least, gap); });
+    return least;
+}
+
 void PlacedSamples::put_on(const ContactGrid& grid) {
     for (std::size_t k = 0; k < placed_count_; ++k)
         number_cells(placed_[k], grid.nx, (grid.nx - 1) / 2);

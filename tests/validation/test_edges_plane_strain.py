@@ -201,10 +201,9 @@ def test_dense_samples_cover_cells_at_the_parts_end_as_even_ones_do(wedges, midd
 
 
 def test_samples_of_several_densities_lose_what_the_law_takes(wedges):
-    """On cells that do not resolve the edge, which is told, volumes hold all the same."""
+    """Cells of 0.75 mm, but for the edge, where they follow it."""
     result = ground(wedges[0.2], 0.5, 0.75, precision_mm=0.002)
     assert len(np.unique(np.round(np.asarray(result.field.areas), 4))) > 3
-    assert "edge of radius 0.2 mm" in " ".join(str(one) for one in result.summary["warnings"])
     law = REMOVAL * float(result.steps["force"].mean())
     assert result.summary["removed_volume_mm3"] == pytest.approx(law, rel=0.01)
     assert abs(result.summary["lost_volume_mm3"]) < 1e-3 * law

@@ -73,18 +73,26 @@ def test_an_edge_beyond_the_first_grid_is_found_at_every_spacing():
         single_contact.run(single_contact.validate({**far, "spacing_mm": 0.5}))
 
 
-@pytest.mark.slow
-def test_a_rib_that_no_cell_shows_is_blamed_on_the_cells():
+def rib(width):
+    """A job that grinds a rib of that width along its middle."""
     job = plate_job()
-    job["design"] = {"brep": plate(60.0, 0.04).write_brep()}
+    job["design"] = {"brep": plate(60.0, width).write_brep()}
     for pose in job["programs"][0]["poses"]:
-        pose["y_mm"] = 0.02
-    with pytest.raises(InputError, match="0.04 mm wide, less than cells of 1 mm show") as error:
-        beltgrinding.run(job)
-    wanted = error.value.arguments
-    job["sampling"]["spacing_mm"] = float(f"{wanted['samples']:.2g}")
-    job["belt_machine"]["contact_spacing_mm"] = float(f"{wanted['wanted']:.2g}")
-    assert beltgrinding.run(job).summary["removed_volume_mm3"] > 0
+        pose["y_mm"] = width / 2
+    job["belt_machine"]["force_N"] = 0.3
+    job["law"] = {"coefficient_mm2_per_N": 1e-8}
+    return job
+
+
+def test_a_rib_far_thinner_than_cells_is_ground():
+    wide, thin = (beltgrinding.run(rib(width)).summary for width in (3.0, 0.04))
+    assert thin["removed_volume_mm3"] == pytest.approx(wide["removed_volume_mm3"], rel=0.01)
+
+
+def test_a_rib_that_no_cell_shows_is_blamed_on_the_cells():
+    with pytest.raises(InputError, match="0.004 mm wide, less than cells of 1 mm show") as error:
+        beltgrinding.run(rib(0.004))
+    assert error.value.arguments["wanted"] == pytest.approx(0.016, rel=1e-3)
 
 
 @pytest.mark.skipif(not FAULTS.is_dir(), reason=f"no faults at {FAULTS}")

@@ -135,16 +135,17 @@ def test_a_precision_takes_the_place_of_a_finer_spacing_on_curved_faces(parts):
     assert (finer["spacing_mm"], finer["precision_mm"]) == (0.5, 0.0005)
 
 
-def test_an_edge_that_the_contacts_cells_do_not_resolve_is_told(parts):
+def test_an_edge_that_a_belts_cells_do_not_resolve_is_told(parts):
     path = parts / "rod.brep"
     shape = workpiece.read_design(job_of(path, [])["design"])
     for cell, codes in ((3.5, ["job.few_cells_on_edge"]), (1.0, [])):
         given = job_of(path, [], spacing_mm=0.5, precision_mm=0.002)
         given["belt_machine"]["contact_spacing_mm"] = cell
+        given["belt_machine"]["kind"] = "free_belt"
         told = []
         workpiece.make_field(given, shape, told, None)
         assert [fact.code for fact in told] == codes
-        given["belt_machine"]["compliance"]["model"] = "geometric"
+        given["belt_machine"]["kind"] = "contact_wheel"  # whose cells follow the edge
         assert spacing.edge_doubts(given, workpiece.make_field(given, shape, [], None)) == []
 
 

@@ -27,7 +27,7 @@ COARSEST = 0.5  # mm, of a spacing that is chosen
 FINEST = 0.01
 SAMPLES_A_CELL = 1.5  # of the contact's grid, at least, each way
 CELL_ON_EDGE = 0.75  # of an edge's radius: cells with which force and removal there are within 10 %
-LEAST_SHARE_OF_CELL = 0.06  # of a cell that a face covers, to bear pressure
+LEAST_SHARE_OF_CELL = 0.011  # of a cell that a face covers, to bear pressure
 WANTED_CELL = 4.0  # of a face's width, for its cells
 ACROSS_CONTACT, ACROSS_FACE = 12, 4  # spacings, of a spacing that is chosen
 LEAST_ACROSS_CONTACT, LEAST_ACROSS_FACE = 6, 3  # fewer are warned of
@@ -264,11 +264,12 @@ def doubted_by(job: Job | Json) -> tuple[float, str] | None:
 
 def edge_doubts(job: Job | Json, field: core.HeightField) -> Facts:
     """Facts of convex places of a job's core.HeightField that are sharper than the contact's cells are wide:
-    what is ground there is not resolved."""
+    what a belt grinds there is not resolved. A wheel's cells follow the noses that it presses on.
+    """
     job = typed(job)
     machine = job.belt_machine
-    if machine.compliance.model == "geometric":
-        return []  # cuts sample by sample
+    if machine.kind not in ("free_belt", "platen"):
+        return []
     cell = max(machine.contact_spacing_mm, SAMPLES_A_CELL * field.spacing)
     bend, areas = curvatures(field)
     sharpest = bend.max(axis=1)

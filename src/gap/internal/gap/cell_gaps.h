@@ -19,6 +19,8 @@ class CellGaps {
     /// lower steps are looked for.
     CellGaps(double layer, bool steps) : whole_layer_(layer), layer_(layer), steps_(steps) {}
 
+    /// As of the constructor.
+    void set_layer(double layer) { whole_layer_ = layer_ = layer; }
     /// Nothing is mapped.
     void clear(const ContactGrid& grid);
     /// Maps the samples, whose cells are known. Edges count near cells with gaps up to `pressable`
@@ -67,6 +69,7 @@ class CellGaps {
     std::vector<float> low_, high_;            // mm, by cell, of what is in its mean
     std::vector<std::uint8_t> inhabited_;      // by cell: a sample lies in it
     std::vector<double> nearest_, farthest_;   // mm, of the samples in a cell
+    std::vector<double> between_;              // by cell: covered by what lies beside it alone
     std::vector<float> limit_;                 // mm, by cell: what lies deeper is another layer's
     std::vector<std::uint8_t> gathered_anew_;  // by the first of four cells
 };

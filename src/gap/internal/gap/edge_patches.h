@@ -25,6 +25,12 @@ class EdgePatches {
     void for_samples(std::span<Footprint> footprints, Visit visit) const {
         for (const EdgePatch& patch : patches_) visit(footprints[patch.footprint]);
     }
+    /// Calls visit(cell, its share that is covered, the sample's gap at its centre, mm) for what
+    /// patches cover.
+    template <class Visit>
+    void for_cells(Visit visit) const {
+        for (const PatchCell& part : covered_) visit(part.cell, part.share, part.carried);
+    }
 
   private:
     /// In cells, from the middle of the outermost cell of lower s and y.

@@ -12,6 +12,7 @@
 #include "contact/displaced.h"
 #include "gap/cell_gaps.h"
 #include "gap/cell_table.h"
+#include "gap/noses.h"
 #include "gap/placed_samples.h"
 #include "gap/sample_removal.h"
 #include "heightfield/sample_blocks.h"
@@ -30,8 +31,9 @@ namespace beltgrinding {
 /// The cells must not be finer than the samples: `ContactGrid` spacing >= 1.5 x field spacing.
 class GapMap {
   public:
-    /// `spacing`: wanted cell, mm; the axial one is adjusted to divide the wheel's width. `beside`:
-    /// mm beyond the wheel's side faces up to which samples are kept for what bulges out there.
+    /// `spacing`: wanted cell, mm, less where the wheel presses on a nose (`Noses`); the axial one
+    /// is adjusted to divide the wheel's width. `beside`: mm beyond the wheel's side faces up to
+    /// which samples are kept for what bulges out there.
     GapMap(const ContactWheel& wheel, double spacing, double beside = 0.0);
 
     /// The wheel, a very large one, stands for a belt, which is flat until it is pressed: its gap
@@ -42,6 +44,7 @@ class GapMap {
     /// `update` does otherwise.
     void prepare(const SampleBlocks& blocks) {
         placed_.form().look(blocks, run_ ? std::nullopt : std::optional(LowSteps::least(grid_)));
+        if (!run_) noses_.look(blocks);
     }
 
     /// Maps the samples of the blocks `hits` (ascending) for the wheel at `work_from_contact`,
@@ -71,6 +74,8 @@ class GapMap {
     std::size_t samples() const { return placed_.count(); }
     /// Smallest gap, mm, of a belt that to where its face lies; +inf when empty.
     double lowest() const;
+    /// The same of the samples themselves.
+    double nearest() const { return placed_.least_gap(); }
 
     /// What bears pressure beyond the side faces from now on, until the next update.
     void reach_beside(const DisplacedPressure& pressure);
@@ -169,6 +174,11 @@ class GapMap {
     MeanSlope slope_near(const SampleBlocks& blocks, double s, double y, double reach) const;
 
   private:
+    /// Places the samples, in cells that suit what they stand for.
+    void place(const SampleBlocks& blocks, std::span<const std::uint32_t> hits,
+               const Frame& work_from_contact, const PlacedSamples::Limits& limits);
+    /// Cells of `spacing` mm, as many across as divide the wheel's width.
+    void set_cells(double spacing);
     /// Cells for samples of up to this |s|, mm.
     void fit_grid(double half_length);
     /// Of a belt: what lies beyond its free run is no surface; `stretch_` of the others.
@@ -181,6 +191,8 @@ class GapMap {
     std::optional<Run> run_;  // of a belt
     BeltArc face_;            // the same: how its face lies
     Eigen::ArrayXd stretch_;  // of a belt: mm2 of surface by mm2 of its cells' plane; else empty
+    Noses noses_;
+    double spacing_;  // mm, of the grid's cells
     PlacedSamples placed_;
     CellGaps cells_;
     SampleRemoval removal_;

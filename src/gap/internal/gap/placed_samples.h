@@ -43,6 +43,19 @@ class PlacedSamples {
                const Frame& work_from_contact, const ContactGrid& grid, const Limits& limits);
     /// mm, largest |s| of those in reach.
     double half_length() const;
+    /// mm; +inf: there is none.
+    double least_gap() const;
+    /// Calls visit(position, mm that it is off the wheel) for each sample under the wheel.
+    template <class Visit>
+    void for_gaps(Visit visit) const {
+        for (const PlacedBlock& block : regular())
+            for (std::uint64_t lanes = block.regular; lanes != 0; lanes &= lanes - 1) {
+                const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+                visit(std::size_t{block.block} * kBlockLanes + lane, block.own_gap[lane]);
+            }
+        for (const Footprint& f : footprints_)
+            if (f.inside > 0.0F) visit(f.position, f.own_gap);
+    }
     /// Finds all samples' cells, now that the grid's length is known.
     void put_on(const ContactGrid& grid);
     /// All on the grid are taken for those of the nearest layer, until it is known.

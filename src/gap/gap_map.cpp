@@ -11,12 +11,13 @@ constexpr double kNothing = std::numeric_limits<double>::infinity();
 constexpr int kGridQuantum = 8;  // grid lengths are multiples, so that warm starts mostly fit
 constexpr double kLayer = 0.5;  // cells: samples further behind the nearest belong to another layer
 constexpr double kFlatLayer = 2.0;  // the same under a belt, which wraps slopes of up to 60 degrees
-constexpr double kMostCells = 20000.0;  // that noses may ask for: more take a second a step
+constexpr double kMostCells =
+    6000.0;  // that noses may ask for: more take a tenth of a second a step
 
-ContactGrid grid_across(const ContactWheel& wheel, double spacing) {
+ContactGrid grid_across(const ContactWheel& wheel, const Noses::Sides& sides) {
     ContactGrid grid;
-    grid.ds = spacing;
-    grid.ny = std::max(1, static_cast<int>(std::lround(wheel.width / spacing)));
+    grid.ds = sides.along;
+    grid.ny = std::max(1, static_cast<int>(std::lround(wheel.width / sides.across)));
     grid.dy = wheel.width / grid.ny;
     return grid;
 }
@@ -24,9 +25,9 @@ ContactGrid grid_across(const ContactWheel& wheel, double spacing) {
 }  // namespace
 
 GapMap::GapMap(const ContactWheel& wheel, double spacing, double beside)
-    : grid_(grid_across(wheel, spacing)),
+    : grid_(grid_across(wheel, {spacing, spacing})),
       noses_(spacing),
-      spacing_(spacing),
+      sides_(noses_.widest()),
       placed_(wheel, beside),
       cells_(kLayer * std::max(grid_.ds, grid_.dy), true) {}
 
@@ -80,23 +81,25 @@ void GapMap::fit_grid(double half_length) {
     grid_.nx = 2 * ((half + kGridQuantum - 1) / kGridQuantum * kGridQuantum) + 1;
 }
 
-void GapMap::set_cells(double spacing) {
-    spacing_ = spacing;
-    grid_ = grid_across(placed_.pose().wheel(), spacing);
-    cells_.set_layer(kLayer * std::max(grid_.ds, grid_.dy));
-}
-
 void GapMap::place(const SampleBlocks& blocks, std::span<const std::uint32_t> hits,
                    const Frame& work_from_contact, const PlacedSamples::Limits& limits) {
     placed_.place(blocks, hits, work_from_contact, grid_, limits);
     if (run_) return;
-    double wanted = noses_.cell(placed_, blocks);
-    const double length = 2.0 * placed_.half_length();
-    while (wanted < noses_.widest() &&
-           length * placed_.pose().wheel().width > kMostCells * wanted * wanted)
-        wanted = std::min(2.0 * wanted, noses_.widest());
-    if (wanted == spacing_) return;
-    set_cells(wanted);
+    const ContactWheel& wheel = placed_.pose().wheel();
+    const Noses::Sides widest = noses_.widest();
+    Noses::Sides wanted = noses_.sides(placed_, blocks);
+    const double all = 2.0 * placed_.half_length() * wheel.width;
+    while (wanted != widest && all > kMostCells * wanted.along * wanted.across) {
+        double& finer = wanted.along < wanted.across ? wanted.along : wanted.across;
+        finer = std::min(2.0 * finer, widest.along);
+    }
+    if (wanted == sides_) return;
+    sides_ = wanted;
+    grid_ = grid_across(wheel, wanted);
+    // Within the shorter side a nose falls off by so much.
+    const double side =
+        wanted == widest ? std::max(grid_.ds, grid_.dy) : std::min(grid_.ds, grid_.dy);
+    cells_.set_layer(kLayer * side);
     placed_.place(blocks, hits, work_from_contact, grid_, limits);
 }
 

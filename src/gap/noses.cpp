@@ -10,8 +10,11 @@ namespace {
 // depend on where the nose lies between the cells.
 constexpr double kCellOnNose = 0.3;
 constexpr double kSamplesPerCell = 1.0;
-constexpr double kNoise = 0.02;    // rad from sample to sample: less is no bend
-constexpr double kMayBear = 0.03;  // mm: gaps of what may bear pressure
+constexpr double kNoise = 0.02;  // rad from sample to sample: less is no bend
+constexpr double kLongest =
+    2.0;  // of a cell's shorter side: longer ones lose what they share with others
+constexpr double kLeastPart = 0.03;  // of the bend along a side: less does not show in its cells
+constexpr double kMayBear = 0.03;    // mm: gaps of what may bear pressure
 
 }  // namespace
 
@@ -34,7 +37,7 @@ void Noses::look(const SampleBlocks& blocks) {
                 Bend& known = bends_[k];
                 const auto radius = static_cast<float>(apart / bend);
                 if (known.radius > 0.0F && known.radius <= radius) continue;
-                known = {radius, static_cast<float>(apart)};
+                known = {radius, static_cast<float>(apart), (along / apart).cast<float>()};
                 any = true;
             }
         }
@@ -49,21 +52,30 @@ void Noses::look(const SampleBlocks& blocks) {
         if (bends_[blocks.sample(k)].radius > 0.0F) bent_[k / kBlockLanes] = 1;
 }
 
-double Noses::cell(const PlacedSamples& placed, const SampleBlocks& blocks) const {
-    if (bends_.empty()) return cell_;
+Noses::Sides Noses::sides(const PlacedSamples& placed, const SampleBlocks& blocks) const {
+    if (bends_.empty()) return widest();
     // Where the wheel is not yet at the work, what it will meet first.
     const double lowest = std::max(placed.least_gap(), 0.0);
-    double wanted = cell_;
+    const Eigen::Matrix3d rotation = placed.pose().contact_from_work().linear();
+    Sides wanted = widest();
     placed.for_gaps([&](std::size_t position, float gap) {
         if (bent_[position / kBlockLanes] == 0 || gap > lowest + kMayBear) return;
         const Bend& bend = bends_[blocks.sample(position)];
         if (!(bend.radius > 0.0F)) return;
         const double top = bend.radius + std::max(blocks.height(position), 0.0);
         const double cell = std::max(kCellOnNose * top, kSamplesPerCell * bend.apart);
-        wanted = std::min(wanted, cell);
+        // A nose askew bends less along either side.
+        const double aside = (rotation * bend.way.cast<double>()).y();
+        const double square = std::min(aside * aside, 1.0);
+        if (square > kLeastPart) wanted.across = std::min(wanted.across, cell / square);
+        if (1.0 - square > kLeastPart) wanted.along = std::min(wanted.along, cell / (1.0 - square));
     });
-    const double halvings = std::round(std::log2(cell_ / wanted));
-    return cell_ * std::exp2(-halvings);
+    const double longest = kLongest * std::min(wanted.along, wanted.across);
+    return {halved(std::min(wanted.along, longest)), halved(std::min(wanted.across, longest))};
+}
+
+double Noses::halved(double wanted) const {
+    return cell_ * std::exp2(-std::round(std::log2(cell_ / wanted)));
 }
 
 }  // namespace beltgrinding

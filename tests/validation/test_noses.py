@@ -14,7 +14,12 @@ from beltgrinding.job import load
 WHEEL, WIDTH, LAYER = 40.0, 20.0, 10.0  # mm
 FORCE, STOCK, FLANK = 10.0, 0.2, math.radians(10.0)  # N, mm
 LENGTH, DEPTH = 60.0, 8.0  # mm, of the part
-ACROSS, ALONG = (0.0, 1.0, 0.0, 0.0), (0.0, math.sqrt(0.5), math.sqrt(0.5), 0.0)  # quaternions w, x, y, z
+ACROSS, ALONG = (0.0, 1.0, 0.0, 0.0), (
+    0.0,
+    math.sqrt(0.5),
+    math.sqrt(0.5),
+    0.0,
+)  # quaternions w, x, y, z
 
 
 def nose(folder, radius):
@@ -68,7 +73,14 @@ def ground(freecad, folder, make, size, poses, spacing, coefficient, **changes):
 @pytest.mark.parametrize(
     "radius, spacing, within",
     # of the approach's mean
-    ((0.2, 1.0, 0.12), (0.2, 0.5, 0.12), (0.2, 0.1, 0.12), (0.8, 0.5, 0.1), (0.8, 0.2, 0.1), (2.0, 0.5, 0.1)),
+    (
+        (0.2, 1.0, 0.12),
+        (0.2, 0.5, 0.12),
+        (0.2, 0.1, 0.12),
+        (0.8, 0.5, 0.1),
+        (0.8, 0.2, 0.1),
+        (2.0, 0.5, 0.1),
+    ),
 )
 def test_a_wheel_across_a_nose_stands_as_high_wherever_it_lies_between_cells(
     freecad, tmp_path, radius, spacing, within
@@ -82,14 +94,17 @@ def test_a_wheel_across_a_nose_stands_as_high_wherever_it_lies_between_cells(
     touch = WHEEL + radius - np.sqrt((WHEEL + top) ** 2 - at**2)  # mm down from the pose
     approach = steps["approach"][there] - touch
     assert len(approach) == len(at) and approach == pytest.approx(approach.mean(), rel=within)
-    fine = ground(freecad, tmp_path, nose, radius, poses[-2:], 0.05, 1e-9, contact_spacing_mm=0.1 * top)
+    fine = ground(
+        freecad, tmp_path, nose, radius, poses[-2:], 0.05, 1e-9, contact_spacing_mm=0.1 * top
+    )
     assert approach.mean() == pytest.approx(fine.steps["approach"][-1] - touch[-1], rel=within)
 
 
 @pytest.mark.parametrize("way", (ALONG, ACROSS))
 @pytest.mark.parametrize("spacing", (1.0, 0.5, 0.2))
 @pytest.mark.parametrize(
-    "make, size", ((nose, 0.1), (nose, 0.2), (nose, 0.4), (nose, 0.8), (land, 0.1), (land, 0.3), (land, 1.0))
+    "make, size",
+    ((nose, 0.1), (nose, 0.2), (nose, 0.4), (nose, 0.8), (land, 0.1), (land, 0.3), (land, 1.0)),
 )
 def test_noses_and_lands_keep_the_volume(freecad, tmp_path, make, size, spacing, way):
     ends = [(0.0, y) for y in (-6.0, 6.0)] if way is ALONG else [(x, 0.0) for x in (-6.0, 6.0)]

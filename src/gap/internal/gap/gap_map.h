@@ -177,8 +177,6 @@ class GapMap {
     /// Places the samples, in cells that suit what they stand for.
     void place(const SampleBlocks& blocks, std::span<const std::uint32_t> hits,
                const Frame& work_from_contact, const PlacedSamples::Limits& limits);
-    /// Cells of `spacing` mm, as many across as divide the wheel's width.
-    void set_cells(double spacing);
     /// Cells for samples of up to this |s|, mm.
     void fit_grid(double half_length);
     /// Of a belt: what lies beyond its free run is no surface; `stretch_` of the others.
@@ -192,7 +190,7 @@ class GapMap {
     BeltArc face_;            // the same: how its face lies
     Eigen::ArrayXd stretch_;  // of a belt: mm2 of surface by mm2 of its cells' plane; else empty
     Noses noses_;
-    double spacing_;  // mm, of the grid's cells
+    Noses::Sides sides_;  // of the grid's cells
     PlacedSamples placed_;
     CellGaps cells_;
     SampleRemoval removal_;

@@ -10,7 +10,8 @@
 namespace beltgrinding {
 
 /// Where a surface bends so much that a wheel touches less of it than cells show: a blade's leading
-/// edge. Looks at what the wheel may press, and tells how small the cells must be there.
+/// edge. Looks at what the wheel may press, and tells how small the cells must be there,
+/// across its crown; along it they may stay.
 class Noses {
   public:
     /// `cell`: mm, of the grid where nothing bends.
@@ -18,17 +19,26 @@ class Noses {
 
     /// Looks once at the design surface of the blocks' field.
     void look(const SampleBlocks& blocks);
-    /// mm: cells for the samples placed, half of those wanted elsewhere, or a quarter, and so on.
-    double cell(const PlacedSamples& placed, const SampleBlocks& blocks) const;
-    /// mm: cells where nothing bends.
-    double widest() const { return cell_; }
+    /// Sides of a cell along the travel and along the axis, mm.
+    struct Sides {
+        double along, across;
+        bool operator==(const Sides&) const = default;
+    };
+    /// For the samples placed: half of those wanted elsewhere, or a quarter, and so on.
+    Sides sides(const PlacedSamples& placed, const SampleBlocks& blocks) const;
+    /// Where nothing bends.
+    Sides widest() const { return {cell_, cell_}; }
 
   private:
     /// Of a sample.
     struct Bend {
-        float radius = 0.0F;  ///< mm, of the design surface; 0: none that matters
-        float apart = 0.0F;   ///< mm, to the neighbour by which that is known
+        float radius = 0.0F;        ///< mm, of the design surface; 0: none that matters
+        float apart = 0.0F;         ///< mm, to the neighbour by which that is known
+        Vec3f way = Vec3f::Zero();  ///< along which it bends, unit
     };
+
+    /// The cell halved so often that it is nearest to `wanted`, mm.
+    double halved(double wanted) const;
 
     double cell_;
     const HeightField* field_ = nullptr;  // that was looked at

@@ -112,6 +112,9 @@ def test_noses_and_lands_keep_the_volume(freecad, tmp_path, make, size, spacing,
     poses = [(way, x, y, 20.0) for x, y in ends]
     run = ground(freecad, tmp_path, make, size, poses, spacing, coefficient)
     law = coefficient * 20e3 * FORCE * 12.0 / 20.0  # K V_b F t
-    # Ten spacings wider than the land, its ends lose a little.
+    removed, lost = (run.summary[f"{name}_volume_mm3"] for name in ("removed", "lost"))
+    told = "volume_lost" in {event["kind"] for event in run.events}
+    # Ten spacings wider than the land, its ends lose a little; of a nose of 0.1 mm more, and it is told.
     within = 0.015 if spacing > 5 * size else 0.01
-    assert run.summary["removed_volume_mm3"] == pytest.approx(law, rel=within)
+    assert removed == pytest.approx(law, rel=within) or (size == 0.1 and told)
+    assert removed + lost == pytest.approx(law, rel=0.015)

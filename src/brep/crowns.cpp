@@ -5,14 +5,7 @@
 #include <limits>
 
 namespace beltgrinding {
-namespace {
-
-// A nose that turns by more than this between two neighbours may lie between them unseen.
-constexpr double kMostTurn = 0.5;  // rad
-
-}  // namespace
-
-double crown_spacing(const FaceSamples& samples, double spacing) {
+double crown_spacing(const FaceSamples& samples, double spacing, double most_turn) {
     double least = std::numeric_limits<double>::infinity();  // radius, mm
     for (const Triangle& triangle : samples.triangles) {
         for (std::size_t k = 0; k < 3; ++k) {
@@ -22,7 +15,7 @@ double crown_spacing(const FaceSamples& samples, double spacing) {
             const Vec3 change = (samples.normal[b] - samples.normal[a]).cast<double>();
             if (!(along.dot(change) > 0.0)) continue;  // hollow
             const double half = std::asin(std::min(1.0, 0.5 * change.norm()));
-            if (2.0 * half > kMostTurn) least = std::min(least, along.norm() / change.norm());
+            if (2.0 * half > most_turn) least = std::min(least, along.norm() / change.norm());
         }
     }
     if (!std::isfinite(least)) return 0.0;

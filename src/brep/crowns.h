@@ -8,7 +8,8 @@ namespace beltgrinding {
 
 /// mm between samples that show the sharpest convex crown which `samples` pass over from one side
 /// to the other, by its radius: normals then turn by `SampleDensity::kTurn` from sample to sample.
-/// 0 where the samples have a row on every crown. Never less than a `kFinestShare`-th of `spacing`.
-double crown_spacing(const FaceSamples& samples, double spacing);
+/// 0 where no crown turns by more than `most_turn` rad from one sample to the next. Never less than
+/// a `kFinestShare`-th of `spacing`.
+double crown_spacing(const FaceSamples& samples, double spacing, double most_turn);
 
 }  // namespace beltgrinding

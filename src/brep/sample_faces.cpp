@@ -193,12 +193,16 @@ double whole_area(const std::vector<Job>& jobs, const Shape::Impl& impl) {
     return area;
 }
 
+// A nose that turns by more than this between two neighbours, rad, is not seen well enough; where
+// it is seen already, samples askew to it may turn by more.
+constexpr double kMostTurn = 0.5, kStillHidden = 0.8;
+
 /// Samples a face again until noses and edge rounds finer than the spacing have a row on each
 /// crown.
 void resolve_crowns(FaceSamples& samples, FaceRequest request, const RunContext& context) {
     const double spacing = request.spacing;
     for (int k = 0; k < kMostRefinements; ++k) {
-        const double wanted = crown_spacing(samples, spacing);
+        const double wanted = crown_spacing(samples, spacing, k == 0 ? kMostTurn : kStillHidden);
         if (!(wanted > 0)) return;
         // What the first samples saw of a nose is wider than it is.
         if (k > 0) request.spacing *= 0.5;

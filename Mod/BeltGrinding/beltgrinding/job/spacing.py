@@ -259,7 +259,7 @@ def doubted_by(job: Job | Json) -> tuple[float, str] | None:
     machine = job.belt_machine
     if not by_curvature(job):
         return None
-    return machine.contact_spacing_mm, machine.compliance.model
+    return machine.contact_spacing_mm, machine.kind
 
 
 def edge_doubts(job: Job | Json, field: core.HeightField) -> Facts:

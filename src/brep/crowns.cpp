@@ -5,6 +5,7 @@
 #include <limits>
 
 namespace beltgrinding {
+
 double crown_spacing(const FaceSamples& samples, double spacing, double most_turn) {
     double least = std::numeric_limits<double>::infinity();  // radius, mm
     for (const Triangle& triangle : samples.triangles) {

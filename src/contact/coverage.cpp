@@ -9,7 +9,8 @@ namespace beltgrinding {
 namespace {
 
 constexpr double kSliver = 0.25;  // of a cell
-constexpr double kLeast = 0.005;
+constexpr double kLeast =
+    0.005;  // the same, with nothing beside it: a land far thinner than a cell
 
 }  // namespace
 

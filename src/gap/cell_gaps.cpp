@@ -164,16 +164,15 @@ void CellGaps::average(const PlacedSamples& placed, const ContactGrid& grid) {
         });
     }
     // Cells between samples that lie further apart than they are wide.
-    std::vector<double>& between = between_;
-    between.assign(limit_.size(), 0.0);
+    between_.assign(limit_.size(), 0.0);
     patches_.for_cells([&](int cell, double share, double carried) {
         if (weight_[cell] > 0.0 || carried - nearest_[static_cast<std::size_t>(cell)] > layer_)
             return;
         gap_[cell] += share * carried;
-        between[static_cast<std::size_t>(cell)] += share;
+        between_[static_cast<std::size_t>(cell)] += share;
     });
     for (int cell = 0; cell < grid.cells(); ++cell)
-        if (const double share = between[static_cast<std::size_t>(cell)]; share > 0.0)
+        if (const double share = between_[static_cast<std::size_t>(cell)]; share > 0.0)
             weight_[cell] = share;
     for (int cell = 0; cell < grid.cells(); ++cell) {
         double& share = coverage_.share[cell];

@@ -20,8 +20,9 @@ constexpr double kMayBear = 0.03;    // mm: gaps of what may bear pressure
 
 void Noses::look(const SampleBlocks& blocks) {
     const HeightField& field = blocks.field();
-    if (field_ == &field) return;
+    if (field_ == &field && size_ == field.size()) return;
     field_ = &field;
+    size_ = field.size();
     bends_.assign(field.size(), {});
     // Cells are halved at least: what bends less than that needs no look.
     const double widest = cell_ / (std::sqrt(2.0) * kCellOnNose);

@@ -28,7 +28,8 @@ namespace beltgrinding {
 /// tangent plane, so that a plane is reproduced exactly whatever the sampling. Where several layers
 /// of the surface lie over each other, only the one nearest to the wheel counts.
 ///
-/// The cells must not be finer than the samples: `ContactGrid` spacing >= 1.5 x field spacing.
+/// The cells must not be finer than the samples: `ContactGrid` spacing >= 1.5 x field spacing, but
+/// on noses, where samples lie closer.
 class GapMap {
   public:
     /// `spacing`: wanted cell, mm, less where the wheel presses on a nose (`Noses`); the axial one

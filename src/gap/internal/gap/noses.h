@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -42,6 +43,7 @@ class Noses {
 
     double cell_;
     const HeightField* field_ = nullptr;  // that was looked at
+    std::size_t size_ = 0;                // samples that it had
     std::vector<Bend> bends_;             // by sample; empty: none matters
     std::vector<std::uint8_t> bent_;      // by block: some sample of it does
 };

@@ -147,6 +147,19 @@ void CellGaps::gather_again(const PlacedSamples& placed, const ContactGrid& grid
         average_cells(block, above, gathered_anew_.data(), limit_.data(), four_cells_.data());
 }
 
+void CellGaps::fill_between(const ContactGrid& grid) {
+    between_.assign(limit_.size(), 0.0);
+    patches_.for_cells([&](int cell, double share, double carried) {
+        if (weight_[cell] > 0.0 || carried - nearest_[static_cast<std::size_t>(cell)] > layer_)
+            return;
+        gap_[cell] += share * carried;
+        between_[static_cast<std::size_t>(cell)] += share;
+    });
+    for (int cell = 0; cell < grid.cells(); ++cell)
+        if (const double share = between_[static_cast<std::size_t>(cell)]; share > 0.0)
+            weight_[cell] = share;
+}
+
 void CellGaps::average(const PlacedSamples& placed, const ContactGrid& grid) {
     limit_.resize(nearest_.size());
     for (std::size_t cell = 0; cell < nearest_.size(); ++cell)
@@ -163,17 +176,7 @@ void CellGaps::average(const PlacedSamples& placed, const ContactGrid& grid) {
             weight_[cell] += weight;
         });
     }
-    // Cells between samples that lie further apart than they are wide.
-    between_.assign(limit_.size(), 0.0);
-    patches_.for_cells([&](int cell, double share, double carried) {
-        if (weight_[cell] > 0.0 || carried - nearest_[static_cast<std::size_t>(cell)] > layer_)
-            return;
-        gap_[cell] += share * carried;
-        between_[static_cast<std::size_t>(cell)] += share;
-    });
-    for (int cell = 0; cell < grid.cells(); ++cell)
-        if (const double share = between_[static_cast<std::size_t>(cell)]; share > 0.0)
-            weight_[cell] = share;
+    if (sparse_) fill_between(grid);
     for (int cell = 0; cell < grid.cells(); ++cell) {
         double& share = coverage_.share[cell];
         if (edges_.edge(static_cast<std::size_t>(cell)) && share > 0.0) {

@@ -99,7 +99,7 @@ void GapMap::place(const SampleBlocks& blocks, std::span<const std::uint32_t> hi
     // Within the shorter side a nose falls off by so much.
     const double side =
         wanted == widest ? std::max(grid_.ds, grid_.dy) : std::min(grid_.ds, grid_.dy);
-    cells_.set_layer(kLayer * side);
+    cells_.set_layer(kLayer * side, wanted != widest);
     placed_.place(blocks, hits, work_from_contact, grid_, limits);
 }
 

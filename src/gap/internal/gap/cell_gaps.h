@@ -19,8 +19,11 @@ class CellGaps {
     /// lower steps are looked for.
     CellGaps(double layer, bool steps) : whole_layer_(layer), layer_(layer), steps_(steps) {}
 
-    /// As of the constructor.
-    void set_layer(double layer) { whole_layer_ = layer_ = layer; }
+    /// `layer`: as of the constructor. `sparse`: samples may lie further apart than cells are wide.
+    void set_layer(double layer, bool sparse) {
+        whole_layer_ = layer_ = layer;
+        sparse_ = sparse;
+    }
     /// Nothing is mapped.
     void clear(const ContactGrid& grid);
     /// Maps the samples, whose cells are known. Edges count near cells with gaps up to `pressable`
@@ -49,6 +52,8 @@ class CellGaps {
     bool smooth(const ContactGrid& grid) const;
     /// Of the samples in each cell.
     void find_range(const PlacedSamples& placed, const ContactGrid& grid);
+    /// Gaps of cells between samples that lie further apart than they are wide, by their patches.
+    void fill_between(const ContactGrid& grid);
     /// The gap of each cell, at its centre.
     void average(const PlacedSamples& placed, const ContactGrid& grid);
     /// What was gathered holds where no sample is too deep, or placed by itself since.
@@ -59,7 +64,7 @@ class CellGaps {
     void carry_to_middles(PlacedSamples& placed, const ContactGrid& grid);
 
     double whole_layer_, layer_;
-    bool steps_;
+    bool steps_, sparse_ = false;
     Coverage coverage_;
     Eigen::ArrayXd gap_, weight_;
     EdgeCells edges_;

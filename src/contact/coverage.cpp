@@ -9,8 +9,9 @@ namespace beltgrinding {
 namespace {
 
 constexpr double kSliver = 0.25;  // of a cell
-constexpr double kLeast =
-    0.005;  // the same, with nothing beside it: a land far thinner than a cell
+constexpr double kLeast = 0.05;   // the same, with nothing beside it
+// The same where there is nothing else: a land far thinner than a cell.
+constexpr double kLeastAlone = 0.005;
 
 }  // namespace
 
@@ -26,6 +27,7 @@ void Coverage::merge_slivers(const ContactGrid& grid) {
         int cell, to, di, dj;
     };
     std::vector<Merged> all;
+    const double least = (share >= kSliver).any() ? kLeast : kLeastAlone;
     for (int j = 0; j < grid.ny; ++j) {
         for (int i = 0; i < grid.nx; ++i) {
             const int cell = j * grid.nx + i;
@@ -39,7 +41,7 @@ void Coverage::merge_slivers(const ContactGrid& grid) {
                 most = share[to];
                 best = {cell, to, di, dj};
             }
-            if (best.to >= 0 || share[cell] < kLeast) all.push_back(best);
+            if (best.to >= 0 || share[cell] < least) all.push_back(best);
         }
     }
     for (const Merged& one : all) {

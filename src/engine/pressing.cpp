@@ -173,17 +173,13 @@ void Pressing::solve(const SampleBlocks& blocks, ContactProblem problem) {
     map_.reach_beside(displaced_);
 }
 
-bool Pressing::find_touch(const SampleBlocks& blocks) {
+bool Pressing::find_touch(const SampleBlocks& blocks, bool by_samples) {
     const double travel = process_.force_travel;
     placed_ = 0.0;
     localise(blocks, travel + tool_.margin);
     map_gap(blocks, travel + tool_.margin, std::numeric_limits<double>::infinity());
-    if (map_.empty() || !(map_.lowest() <= travel)) return false;
-    // A nose that is thinner than cells: they carry its flanks beyond its crown.
-    double lowest = map_.lowest();
-    if (const double nearest = map_.nearest();
-        !tool_.flat && nearest - lowest > kDrift * tool_.margin)
-        lowest = nearest;
+    const double lowest = by_samples ? map_.nearest() : map_.lowest();
+    if (map_.empty() || !(lowest <= travel)) return false;
     placed_ = std::clamp(lowest, -travel, travel);
     return true;
 }
@@ -237,10 +233,10 @@ Pressing::State Pressing::let_go() {
 
 Pressing::State Pressing::press_force(const SampleBlocks& blocks, double force) {
     if (force <= 0.0) return let_go();
-    bool searched = false;
+    int searches = 0;
     if (!warm_) {
-        if (!find_touch(blocks)) return let_go();
-        searched = true;
+        if (!find_touch(blocks, false)) return let_go();
+        ++searches;
     }
     for (int i = 0;; ++i) {
         localise(blocks, tool_.margin);
@@ -250,9 +246,11 @@ Pressing::State Pressing::press_force(const SampleBlocks& blocks, double force) 
         const bool yields =
             tool_.flat && !map_.empty() && std::isfinite(map_.lowest()) && solution_.force <= 0.0;
         if (!yields && (map_.empty() || solution_.force <= 0.0)) {
-            // The surface fell away from where it was at the last pose.
-            if (searched || !find_touch(blocks)) return let_go();
-            searched = true;
+            // The surface fell away from where it was at the last pose; or cells carry the flanks
+            // of a nose that is thinner than they are beyond its crown.
+            const bool by_samples = searches == 1 && !tool_.flat;
+            if ((searches > 0 && !by_samples) || !find_touch(blocks, by_samples)) return let_go();
+            ++searches;
             continue;
         }
         const Wanted wanted = within_limits(yields ? std::numeric_limits<double>::infinity()

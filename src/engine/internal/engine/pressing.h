@@ -145,7 +145,7 @@ class Pressing final : public Keeps<Latest<PressingMemory>> {
     /// The wheel is held at `held_at_`, by a spring that gives way by `give_`.
     void solve_held(const SampleBlocks& blocks);
     void solve(const SampleBlocks& blocks, ContactProblem problem);
-    bool find_touch(const SampleBlocks& blocks);
+    bool find_touch(const SampleBlocks& blocks, bool by_samples);
     /// Where force control wants the wheel, mm along z from the pose, or the limit that it meets.
     struct Wanted {
         double place;

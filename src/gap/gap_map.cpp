@@ -11,8 +11,6 @@ constexpr double kNothing = std::numeric_limits<double>::infinity();
 constexpr int kGridQuantum = 8;  // grid lengths are multiples, so that warm starts mostly fit
 constexpr double kLayer = 0.5;  // cells: samples further behind the nearest belong to another layer
 constexpr double kFlatLayer = 2.0;  // the same under a belt, which wraps slopes of up to 60 degrees
-constexpr double kMostCells =
-    6000.0;  // that noses may ask for: more take a tenth of a second a step
 
 ContactGrid grid_across(const ContactWheel& wheel, const Noses::Sides& sides) {
     ContactGrid grid;
@@ -85,22 +83,18 @@ void GapMap::place(const SampleBlocks& blocks, std::span<const std::uint32_t> hi
                    const Frame& work_from_contact, const PlacedSamples::Limits& limits) {
     placed_.place(blocks, hits, work_from_contact, grid_, limits);
     if (run_) return;
-    const ContactWheel& wheel = placed_.pose().wheel();
     const Noses::Sides widest = noses_.widest();
-    Noses::Sides wanted = noses_.sides(placed_, blocks);
-    const double all = 2.0 * placed_.half_length() * wheel.width;
-    while (wanted != widest && all > kMostCells * wanted.along * wanted.across) {
-        double& finer = wanted.along < wanted.across ? wanted.along : wanted.across;
-        finer = std::min(2.0 * finer, widest.along);
+    const Noses::Sides wanted = noses_.sides(placed_, blocks);
+    if (wanted != sides_) {
+        sides_ = wanted;
+        grid_ = grid_across(placed_.pose().wheel(), wanted);
+        // Within the shorter side a nose falls off by so much.
+        const double side =
+            wanted == widest ? std::max(grid_.ds, grid_.dy) : std::min(grid_.ds, grid_.dy);
+        cells_.set_layer(kLayer * side, wanted != widest);
+        placed_.place(blocks, hits, work_from_contact, grid_, limits);
     }
-    if (wanted == sides_) return;
-    sides_ = wanted;
-    grid_ = grid_across(wheel, wanted);
-    // Within the shorter side a nose falls off by so much.
-    const double side =
-        wanted == widest ? std::max(grid_.ds, grid_.dy) : std::min(grid_.ds, grid_.dy);
-    cells_.set_layer(kLayer * side, wanted != widest);
-    placed_.place(blocks, hits, work_from_contact, grid_, limits);
+    noses_.follow_the_ground(placed_, blocks, grid_);
 }
 
 void GapMap::update(const SampleBlocks& blocks, std::span<const std::uint32_t> hits,
@@ -160,12 +154,14 @@ GapMap::MeanSlope GapMap::slope_near(const SampleBlocks& blocks, double s, doubl
                                      double reach) const {
     MeanSlope mean{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
     int count = 0;
-    placed_.for_near(blocks, grid_, s, y, reach,
-                     [&](const Eigen::Vector2d& place, double slope_s, double slope_y) {
-                         mean.place += place;
-                         mean.slope += Eigen::Vector2d(slope_s / grid_.ds, slope_y / grid_.dy);
-                         ++count;
-                     });
+    placed_.for_near(
+        blocks, grid_, s, y, reach,
+        [&](std::size_t position, const Eigen::Vector2d& place, const Eigen::Vector2d& slopes) {
+            if (noses_.worn_through(blocks, position)) return;
+            mean.place += place;
+            mean.slope += slopes;
+            ++count;
+        });
     return {mean.place / count, mean.slope / count};
 }
 

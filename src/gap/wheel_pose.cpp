@@ -27,6 +27,14 @@ WheelPose::WheelPose(const ContactWheel& wheel) : wheel_(wheel) {
     }
 }
 
+Eigen::Vector2d WheelPose::slopes(const Vec3& normal, double s, double gap) const {
+    const Vec3 n = contact_from_work_.linear() * normal;
+    const double sine = std::sin(s / wheel_.radius), cosine = std::cos(s / wheel_.radius);
+    const double facing = std::max<double>(-n.x() * sine - n.z() * cosine, kSteepest * n.norm());
+    const double tangential = n.x() * cosine - n.z() * sine;
+    return {tangential / facing * (1.0 + gap / wheel_.radius), n.y() / facing};
+}
+
 double WheelPose::down_to_envelope(const SampleBlocks& blocks, const Footprint& f, double approach,
                                    double wanted) const {
     const HeightField& field = blocks.field();

@@ -115,3 +115,28 @@ def test_noses_and_lands_keep_the_volume(freecad, tmp_path, make, size, spacing,
     within = 0.015 if spacing > 5 * size else 0.01
     assert removed == pytest.approx(law, rel=within) or (make is nose and size == 0.1 and told)
     assert removed + lost == pytest.approx(law, rel=0.015)
+
+
+def crown(run):
+    """mm, the height of what is left of the nose under the middle of the wheel's way."""
+    points, normals = (np.asarray(run.field.points), np.asarray(run.field.normals))
+    top = points + np.asarray(run.field.height)[:, None] * normals
+    return top[np.abs(top[:, 1]) < 3.0, 2].max()
+
+
+@pytest.mark.parametrize("spacing", (1.0, 0.5, 0.25))
+@pytest.mark.parametrize("way", (ALONG, ACROSS))
+def test_a_crown_is_worn_as_flat_whatever_the_spacing(freecad, tmp_path, spacing, way):
+    """Then the flanks beside it do not lean as the design's."""
+    if way is ALONG:
+        poses = [(way, 0.0, y, 20.0) for y in (-12.0, 12.0)]
+        coefficient = 16e-6
+    else:
+        poses = [(way, x, 0.0, 20.0) for x in (-6.0, 6.0)]
+        coefficient = 32e-6
+    crowns = [
+        crown(ground(freecad, tmp_path, nose, 0.3, poses, step, coefficient, **changes))
+        for step, changes in ((spacing, {}), (0.05, {"contact_spacing_mm": 0.1}))
+    ]
+    assert crowns[1] < -0.06  # and 0.2 mm of stock
+    assert crowns[0] == pytest.approx(crowns[1], abs=0.015)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -56,6 +57,32 @@ class PlacedSamples {
         for (const Footprint& f : footprints_)
             if (f.inside > 0.0F) visit(f.position, f.own_gap);
     }
+    /// Adds to the slopes of each sample in reach, before they are put on the grid, what
+    /// more(position, s, gap; mm) gives: mm per mm round the wheel and along its axis.
+    template <class More>
+    void tilt(const ContactGrid& grid, More more) {
+        for (std::size_t k = 0; k < placed_count_; ++k) {
+            PlacedBlock& block = placed_[k];
+            for (std::uint64_t lanes = block.in_reach; lanes != 0; lanes &= lanes - 1) {
+                const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+                const float u = block.u[lane], v = block.v[lane];
+                const double s = (static_cast<double>(block.cell[lane]) + u) * grid.ds;
+                const std::size_t position = std::size_t{block.block} * kBlockLanes + lane;
+                const Eigen::Vector2d slopes = more(position, s, block.own_gap[lane]);
+                const auto by_s = static_cast<float>(slopes.x() * grid.ds);
+                const auto by_y = static_cast<float>(slopes.y() * grid.dy);
+                block.slope_s[lane] += by_s;
+                block.slope_y[lane] += by_y;
+                block.gap[lane] -= u * by_s + v * by_y;
+            }
+        }
+        for (Footprint& f : footprints_) {
+            if (f.own_gap > limits_.reach) continue;
+            const Eigen::Vector2d slopes = more(f.position, f.s, f.own_gap);
+            f.slope_s += static_cast<float>(slopes.x());
+            f.slope_y += static_cast<float>(slopes.y());
+        }
+    }
     /// Finds all samples' cells, now that the grid's length is known.
     void put_on(const ContactGrid& grid);
     /// All on the grid are taken for those of the nearest layer, until it is known.
@@ -90,8 +117,8 @@ class PlacedSamples {
     static Footprint in_block(const SampleBlocks& blocks, const PlacedBlock& placed, int lane);
     /// Position of the sample of the nearest layer that lies nearest to (s, y), mm.
     std::optional<std::size_t> nearest_to(const ContactGrid& grid, double s, double y) const;
-    /// Calls visit(place (s, y; mm), slopes by a cell) for the samples of the nearest layer within
-    /// `reach` mm of (s, y).
+    /// Calls visit(position, place (s, y; mm), slopes of the design's gap, mm per mm) for the
+    /// samples of the nearest layer within `reach` mm of (s, y).
     template <class Visit>
     void for_near(const SampleBlocks& blocks, const ContactGrid& grid, double s, double y,
                   double reach, Visit visit) const {
@@ -107,16 +134,26 @@ class PlacedSamples {
                 const std::size_t position = std::size_t{placed.block} * kBlockLanes + lane;
                 const double across =
                     (pose_.contact_from_work() * blocks.top_in_block(position)).y();
-                visit(Eigen::Vector2d(place_of(grid, placed, lane).x(), across),
-                      placed.slope_s[lane], placed.slope_y[lane]);
+                visit_design(blocks, position, {place_of(grid, placed, lane).x(), across},
+                             placed.own_gap[lane], visit);
             }
         }
         for (const Footprint& f : footprints_)
             if (f.nearest && (f.s - s) * (f.s - s) + (f.y - y) * (f.y - y) <= reach * reach)
-                visit(Eigen::Vector2d(f.s, f.y), f.slope_s, f.slope_y);
+                visit_design(blocks, f.position, {f.s, f.y}, f.own_gap, visit);
     }
 
   private:
+    /// Visits a sample that lies `at`, for `for_near`.
+    template <class Visit>
+    void visit_design(const SampleBlocks& blocks, std::size_t position, const Eigen::Vector2d& at,
+                      double gap, Visit visit) const {
+        const Vec3 normal = blocks.field().normal[blocks.sample(position)].cast<double>();
+        const double half = 0.5 * pose_.wheel().width;
+        Eigen::Vector2d slopes = pose_.slopes(normal, at.x(), gap);
+        slopes.y() += pose_.wheel().drop_slope(std::clamp(at.y(), -half, half));
+        visit(position, at, slopes);
+    }
     /// Places a sample by itself, if the wheel can press it: where its ray leans, or far round the
     /// wheel.
     void place_alone(const SampleBlocks& blocks, std::size_t position);

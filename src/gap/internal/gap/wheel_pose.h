@@ -23,6 +23,9 @@ class WheelPose {
     const Frame& contact_from_work() const { return contact_from_work_; }
     /// Of the wheel's profile, mm per mm of width.
     double steepest_flank() const { return steepest_flank_; }
+    /// How the gap rises round the wheel and along its axis (mm per mm, as of a cylinder) over a
+    /// surface with that normal (work frame) where it is `gap` mm off the wheel at `s` mm.
+    Eigen::Vector2d slopes(const Vec3& normal, double s, double gap) const;
     /// How far of `wanted` mm the sample may be lowered until it lies on the envelope, moved by
     /// `approach` mm along the contact frame's z.
     double down_to_envelope(const SampleBlocks& blocks, const Footprint& f, double approach,

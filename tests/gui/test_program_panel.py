@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from PySide import QtGui
 
-from beltgrinding.gui.panels.panel import edit
+from beltgrinding.gui.common.editing import edit
 from beltgrinding.objects import set_up
 from support.hands import bring_up, field, prepare, press, visible
 

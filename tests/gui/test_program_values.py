@@ -11,7 +11,7 @@ import Part
 from PySide import QtCore, QtGui
 
 import beltgrinding
-from beltgrinding.gui.panels.panel import edit
+from beltgrinding.gui.common.editing import edit
 from beltgrinding.objects import set_up
 from support.hands import choose, field, menu, press, settle, start, visible
 from support.restoring import speak

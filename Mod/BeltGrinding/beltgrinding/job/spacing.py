@@ -253,7 +253,7 @@ def unseen(job: Job | Json, shape: core.Shape, context: Context = None) -> Input
     )
 
 
-def doubted_by(job: Job | Json) -> tuple[float, str] | None:
+def doubted_by(job: Job | Json) -> tuple[float, str | None] | None:
     """All of a job besides its faces and their sampling that ``edge_doubts`` reads, if it is asked at all."""
     job = typed(job)
     machine = job.belt_machine

@@ -171,6 +171,12 @@ def limits(obj: DocumentObject, name: str) -> tuple[float | None, float | None, 
     return scaled[0], scaled[1], open_low
 
 
+def property_of(obj: DocumentObject, key: str) -> str:
+    """The property that mirrors a job's key; '' where the object has none."""
+    mine = (name for (kind, name), one in _keys.items() if kind == type_of(obj) and one.key == key)
+    return next(mine, "")
+
+
 UNITS = {  # what a key ends with: the unit
     "_mm_s2": "mm/s²",
     "_mm_s": "mm/s",

@@ -13,6 +13,7 @@ from ...objects.job_data import child
 from ...objects.job_object import BeltGrindingJob
 from ...objects.kinds import Document, DocumentObject
 from ...objects.proxy import type_of
+from ..common.chosen import active_job
 from ..common.icons import icon
 from ..common.messages import report
 from ..common.transaction import transaction
@@ -22,20 +23,6 @@ if TYPE_CHECKING:
 
 PREFIX = "BeltGrinding_"  # of all names
 EXPAND = 2  # toggleTreeItem's modes: 0 toggle, 1 collapse, 2 expand
-
-
-def active_job() -> DocumentObject:
-    """The selected job, or the job of the selected object, or the document's only one; or None."""
-    document = FreeCAD.ActiveDocument
-    if document is None:
-        return None
-    for obj in Gui.Selection.getSelection(document.Name):
-        while obj is not None:
-            if type_of(obj) == BeltGrindingJob.TYPE:
-                return obj
-            obj = obj.getParentGroup()
-    jobs = [obj for obj in document.Objects if type_of(obj) == BeltGrindingJob.TYPE]
-    return jobs[0] if len(jobs) == 1 else None
 
 
 def expand(job: DocumentObject) -> None:

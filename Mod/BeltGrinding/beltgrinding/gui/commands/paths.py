@@ -14,7 +14,7 @@ from ..common.file_filters import programs_filter
 from ..common.messages import error_text, inform
 from ..common.save_dialog import file_to_write
 from ..common.transaction import transaction
-from ..panels.panel import edit
+from ..common.editing import edit
 from .base import active_job, make, make_once
 
 

@@ -10,7 +10,7 @@ from ...objects.kinds import DocumentObject
 from ..common.compat import translate
 from ..common.transaction import commit
 from ..common.task_panel import show_panel
-from ..panels.panel import edit
+from ..common.editing import edit
 from .base import active_job, make, make_once
 from .set_up import new_job
 

@@ -11,7 +11,7 @@ from ...objects.kinds import DocumentObject
 from ..common.compat import translate
 from ..common.transaction import transaction
 from ..common.task_panel import show_panel
-from ..panels.panel import edit
+from ..common.editing import edit
 from .base import active_job, expand, make, make_once
 
 

@@ -14,7 +14,10 @@ import FreeCADGui as Gui
 
 from ...base.messages import notes, reason, sentence
 from .compat import QtGui, translate
-from .kinds import Icon, Json
+from .kinds import Icon, Json, Widget
+
+ERROR = "BeltGrinding_Error"
+SAID = "said"  # property of a message: its text, without links
 
 
 def error_text(error: Any) -> str:
@@ -41,12 +44,17 @@ def report(error: BaseException) -> None:
         lines = traceback.format_exception(type(error), error, error.__traceback__)
         FreeCAD.Console.PrintError("".join(lines))
     tell(error_text(error))
+    from . import field_links  # not above, as in error_text
+
+    for box in Gui.getMainWindow().findChildren(QtGui.QMessageBox, ERROR):
+        if box.isVisible():
+            field_links.link(box, box.property(SAID))
 
 
 def tell(text: str) -> None:
     """An error in the report view and in a message that does not hold FreeCAD up."""
     FreeCAD.Console.PrintWarning(f"{text}\n")
-    _show(text, "BeltGrinding_Error", QtGui.QMessageBox.Warning)
+    _show(text, ERROR, QtGui.QMessageBox.Warning)
 
 
 def inform(text: str) -> None:
@@ -59,13 +67,19 @@ def _show(text: str, name: str, icon: Icon) -> None:
     window = Gui.getMainWindow()
     for one in window.findChildren(QtGui.QMessageBox, name):
         if one.isVisible():  # not one upon the other
-            if text not in one.text().split("\n\n"):
-                one.setText(f"{one.text()}\n\n{text}")
+            said = one.property(SAID)
+            if text not in said.split("\n\n"):
+                _say(one, f"{said}\n\n{text}")
             return
     box = QtGui.QMessageBox(window)
     box.setObjectName(name)
     box.setIcon(icon)
     box.setWindowTitle(translate("BeltGrinding", "Belt grinding"))
-    box.setText(text)
+    _say(box, text)
     box.setModal(False)
     box.show()
+
+
+def _say(box: Widget, text: str) -> None:
+    box.setProperty(SAID, text)
+    box.setText(text)

@@ -15,6 +15,7 @@ from ...objects.job_data import children, face_name
 from ...objects.kinds import DocumentObject, Field
 from ...objects.robot_path import RobotPath
 from ...objects.fields import forget_field
+from ..common.editing import edit
 from ..common.compat import QtCore, QtGui, translate
 from ..common.event_texts import errors
 from ..common.kinds import Array, Json, QtEvent, Widget
@@ -224,7 +225,6 @@ class VerdictDock(ObjectDock):
     def lay_here(self) -> None:
         """A raster path on the cluster that is chosen, in its panel."""
         from ..common.transaction import transaction
-        from ..panels.panel import edit
 
         row = self.clusters.currentRow()
         if self.cluster_of is None or row < 0:

@@ -10,6 +10,7 @@ import FreeCADGui as Gui
 from ...engine import InputError
 from ...objects.kinds import Document, DocumentObject
 from ...objects.living import GONE
+from ..common import field_links
 from ..common.compat import QtGui, buttons, translate
 from ..common.help_pages import helped
 from ..common.icons import qicon
@@ -47,6 +48,7 @@ class Panel:
         self.note = QtGui.QLabel()
         self.note.setObjectName("note")
         self.note.setWordWrap(True)
+        self.note.linkActivated.connect(lambda link: field_links.go_to(self.document.Name, link))
         self.note.hide()
         self.ended = False
         self.form.destroyed.connect(lambda *_: self._gone())
@@ -59,7 +61,7 @@ class Panel:
 
     def tell(self, text: str, error: bool = False) -> None:
         """A message in the panel; '' hides it."""
-        self.note.setText(breakable(text))
+        field_links.show(self.note, breakable(text), [self.obj] if error else [])
         self.note.setStyleSheet(warning_style(error))
         self.note.setVisible(bool(text))
 
@@ -124,15 +126,3 @@ def _leave(document: Document) -> None:
         gui.resetEdit()
     else:
         Gui.Control.closeDialog()
-
-
-def edit(obj: DocumentObject) -> None:
-    """Opens the panel of an object, as a double click does, in an undo transaction."""
-    if Gui.Control.activeDialog():
-        FreeCAD.Console.PrintWarning(
-            translate("BeltGrinding", "Close the open task panel first.") + "\n"
-        )
-        return
-    if not obj.Document.HasPendingTransaction:
-        obj.Document.openTransaction(translate("BeltGrinding", "Edit") + " " + obj.Label)
-    Gui.getDocument(obj.Document.Name).setEdit(obj.Name, 0)

@@ -14,7 +14,8 @@ from ..common.report_language import language
 from ..widgets.form import Form
 from ..widgets.pose_walk import PoseTable, PoseWalk
 from ..widgets.program_values import ProgramValues
-from .panel import Panel, edit
+from ..common.editing import edit
+from .panel import Panel
 
 SHOWN_PROBLEMS = stored_facts.MOST  # more are kept in English only
 TABLE_HEIGHT = 260  # pixels

@@ -13,7 +13,8 @@ import FreeCADGui as Gui
 from ...base.kinds import known
 from ...engine import Cancelled, InputError
 from ...objects.kinds import DocumentObject
-from ..common.compat import QtGui, buttons, translate
+from ..common import field_links
+from ..common.compat import QtCore, QtGui, buttons, translate
 from ..common.help_pages import helped
 from ..common.icons import qicon
 from ..common.kinds import Buttons, Widget
@@ -45,6 +46,7 @@ class RunPanel:
         self.state = QtGui.QLabel()
         self.state.setObjectName("state")
         self.state.setWordWrap(True)
+        self.state.linkActivated.connect(self._leave_for)
         self.bar = QtGui.QProgressBar()
         self.bar.setRange(0, 1000)
         self.cancel = self._button("cancel", translate("BeltGrinding", "Cancel"), self.stop)
@@ -131,10 +133,19 @@ class RunPanel:
         self._say(error_text(error), True)
 
     def _say(self, text: str, error: bool = False) -> None:
-        self.state.setText(text)
+        if error:
+            field_links.show(self.state, text, field_links.objects_of(self.job))
+        else:
+            self.state.setText(text)
         style = warning_style(error)
         if style != self.state.styleSheet():
             self.state.setStyleSheet(style)
+
+    def _leave_for(self, link: str) -> None:
+        """Closes this panel for that of a field."""
+        document = self.job.Document.Name
+        Gui.Control.closeDialog()
+        QtCore.QTimer.singleShot(0, lambda: field_links.go_to(document, link))
 
     def _arrange(self, running: bool) -> None:
         self.bar.setVisible(running)

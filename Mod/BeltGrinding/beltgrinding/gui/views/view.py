@@ -14,7 +14,7 @@ from ..common.compat import translate
 from ..common.icons import icon, qicon, stale_icon
 from ..common.kinds import Menu
 from ..common.redraw import Once, drawing
-from ..panels.panel import edit
+from ..common.editing import edit
 
 if TYPE_CHECKING:
     from ..scene.legend import Legend

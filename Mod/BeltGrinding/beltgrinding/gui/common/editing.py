@@ -1,0 +1,21 @@
+"""Opens the panel of an object."""
+
+from __future__ import annotations
+
+import FreeCAD
+import FreeCADGui as Gui
+
+from ...objects.kinds import DocumentObject
+from .compat import translate
+
+
+def edit(obj: DocumentObject) -> None:
+    """Opens the panel of an object, as a double click does, in an undo transaction."""
+    if Gui.Control.activeDialog():
+        FreeCAD.Console.PrintWarning(
+            translate("BeltGrinding", "Close the open task panel first.") + "\n"
+        )
+        return
+    if not obj.Document.HasPendingTransaction:
+        obj.Document.openTransaction(translate("BeltGrinding", "Edit") + " " + obj.Label)
+    Gui.getDocument(obj.Document.Name).setEdit(obj.Name, 0)

@@ -1,5 +1,6 @@
 """What all Python tests share."""
 
+import os
 import sys
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import pytest
 from support import left_behind, skips
 
 ROOT = Path(__file__).resolve().parents[1]
+SLOW = {"robustness", "fuzz", "validation", "library"}  # suites all of whose tests take long
 
 pytest_plugins = ["support.freecad", "support.inside"]
 
@@ -31,6 +33,25 @@ def pytest_runtest_makereport():
 @pytest.hookimpl(hookwrapper=True)
 def pytest_make_collect_report():
     _judged((yield).get_result())
+
+
+def pytest_collection_modifyitems(config, items):
+    """With BELTGRINDING_HALF 0 or 1, every second of those that take long is left out."""
+    half = os.environ.get("BELTGRINDING_HALF", "")
+    if half not in ("0", "1"):
+        return
+
+    def name(item):
+        return item.nodeid.partition("[")[0]
+
+    def takes_long(item):
+        return item.get_closest_marker("slow") or item.path.parent.name in SLOW
+
+    numbers = {one: k for k, one in enumerate(sorted({name(i) for i in items if takes_long(i)}))}
+    out = [item for item in items if numbers.get(name(item), int(half)) % 2 != int(half)]
+    if out:
+        items[:] = [item for item in items if item not in set(out)]
+        config.hook.pytest_deselected(items=out)
 
 
 def pytest_deselected(items):

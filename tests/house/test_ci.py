@@ -32,6 +32,7 @@ def ci(tmp_path):
             **os.environ,
             "PATH": f"{checkout / 'bin'}:{os.environ['PATH']}",
             "BELTGRINDING_COMPAT": str(compat),
+            "CI_HALF": "1",
             **variables,
         }
         done = subprocess.run(
@@ -54,6 +55,15 @@ def test_figures_add_up(ci):
     assert lines[-1] == "12 passed, 0 failed, 3 skipped"  # one more of FreeCAD 1.0, one of tidy
 
 
+def test_half_of_what_takes_long_is_passed_as_the_commit_says(ci):
+    told = 'echo "asked $*"; echo 1 passed, 0 failed, 0 skipped'
+    status, lines = ci(test=told)
+    assert status == 0 and "asked --half 1" in lines
+    assert "half 1 was passed" in lines[-2]
+    _, lines = ci(test=told, CI_HALF="")  # no commit: a folder without git
+    assert "asked --half 0" in lines
+
+
 def test_strictness_reaches_the_tests(ci):
     status, lines = ci(
         test='echo "strict $BELTGRINDING_STRICT"; echo 1 passed, 0 failed, 0 skipped'
@@ -70,13 +80,13 @@ def test_failures_of_the_suite_fail(ci):
 def test_a_suite_without_its_last_line_is_a_failure(ci, test):
     status, lines = ci(test=test, CI_HARD="2")
     assert status == 1 and lines[-1] == "2 passed, 1 failed, 1 skipped"
-    assert "without its last line" in lines[-2]
+    assert "without its last line" in lines[-3]
 
 
 def test_a_suite_that_fails_after_its_last_line_is_a_failure(ci):
     status, lines = ci(test="echo 10 passed, 0 failed, 2 skipped; exit 7")
     assert status == 1 and lines[-1] == "12 passed, 1 failed, 3 skipped"
-    assert lines[-2] == "tools/test --all ended with status 7."
+    assert lines[-3] == "tools/test --half 1 ended with status 7."
 
 
 def test_a_freecad_whose_tests_fail_is_a_failure(ci):

@@ -136,6 +136,44 @@ def test_what_is_marked_slow_is_left_to_all_and_nothing_else(checkout, options, 
     assert "addopts" not in settings.partition("\n[")[0]
 
 
+def collected(*folders, half=""):
+    """Ids of the tests that pytest would pass."""
+    done = subprocess.run(
+        [
+            sys.executable,
+            "-m",
+            "pytest",
+            "--collect-only",
+            "-q",
+            "-p",
+            "no:cacheprovider",
+            *folders,
+        ],
+        env={**os.environ, "BELTGRINDING_HALF": half},
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    return [line for line in done.stdout.splitlines() if "::" in line]
+
+
+def test_the_halves_together_are_all_and_share_what_is_quick():
+    quick, some = "tests/programs/test_apt.py", "tests/validation/test_noses.py"
+    for suite in ("tests/library", some):
+        whole = collected(suite)
+        one, other = (collected(suite, half=half) for half in "01")
+        assert one and other and sorted(one + other) == sorted(whole)
+    assert collected(quick, half="0") == collected(quick, half="1") == collected(quick)
+
+
+@pytest.mark.parametrize("half", "01")
+def test_a_half_is_passed_by_all_suites(checkout, half):
+    status, lines, besides = checkout("--half", half, gui="echo '7 tests left out'")
+    assert status == 0 and lines[-1] == f"{len(suites_of())} passed, 0 failed, 0 skipped"
+    assert "the other half of what takes long: 7 tests" in besides
+
+
 # Files all of whose tests are slow: the file whose quick tests are of the same kind.
 WHOLLY_SLOW = {
     "gui/test_german_figures.py": "gui/test_translations.py",

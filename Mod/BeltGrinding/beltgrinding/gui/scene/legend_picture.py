@@ -15,6 +15,7 @@ LETTER = 8.4  # widths of the panel in heights of its letters, on the mean
 LEAST, MOST_SHARE = 9.5, 1.0 / 30.0  # pixels; of the view's height: a letter
 TALL = 0.55  # of the view's height: the bar
 TALLEST = 0.94  # all
+WIDER = 1.4  # than the least, where the title needs it
 LINE = 1.35  # from line to line, in letters
 OPACITY = 215  # of 255: the ground
 
@@ -60,6 +61,9 @@ def draw(spec: Spec, width: float, height: float, ratio: float = 1.0) -> Image |
     widest = max([0.0, *(metrics.boundingRect(text).width() for text in spec.labels.values())])
     share = SHARE if spec.colours else LIST_SHARE
     inner = max(bar_width + gap + widest if spec.colours else 0.0, width / share - 2 * pad)
+    whole = metrics.boundingRect(spec.title).width() + 1
+    if whole <= WIDER * inner:  # a quantity and its unit on one line
+        inner = max(inner, whole)
     bold = QtGui.QFont(font)
     bold.setBold(True)
     broad = QtGui.QFontMetricsF(bold)

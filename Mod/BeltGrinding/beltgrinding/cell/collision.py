@@ -118,7 +118,7 @@ def bodies(
     """The bodies of a validated job as ``core.check_collisions`` takes them."""
     job = typed(job)
     stock = job.stock
-    uniform = stock.kind == "allowance"
+    uniform = stock.kind in ("allowance", "left")
     grown = max(0.0, stock.allowance_mm + stock.offset_mm) if uniform else 0.0
     mesh = _triangulate(shape, context)
     found = [{"name": PART, "frame": "part", "mesh": mesh, "margin": grown}]

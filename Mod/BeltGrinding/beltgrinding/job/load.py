@@ -104,6 +104,12 @@ def _complete(job: dict[str, Any], folder: Path | str) -> None:
         raise InputError(
             "job.no_mesh_file", "{key}: a mesh stock needs the key 'file'", key="stock"
         )
+    if stock["kind"] == "left" and "left_by" not in stock:
+        raise InputError(
+            "job.no_left_by",
+            "{key}: what an earlier run left needs the key 'left_by', its heightfield.h5",
+            key="stock",
+        )
     if stock["kind"] == "solid" and ("file" in stock) == ("brep" in stock):
         raise InputError(
             "job.no_solid",

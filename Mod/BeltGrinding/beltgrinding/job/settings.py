@@ -44,7 +44,7 @@ class Sampling:
 class Stock:
     """``stock`` of a job."""
 
-    kind: Literal["allowance", "solid", "mesh"]
+    kind: Literal["allowance", "solid", "mesh", "left"]
     allowance_mm: float
     file: str | None = None
     brep: str | None = None

@@ -27,7 +27,7 @@ from .set_up import import_program, make_belt, make_belt_machine, make_job, make
 
 def export_job(job: DocumentObject, path: Path | str) -> Path:
     """Writes the job as job.json, which ``beltgrind run`` grinds without FreeCAD. Meshes of the document
-    (stock, bodies) are written beside it, under names that begin as its own; none takes the place of a
+    (stock, bodies), and what another job leaves, are written beside it, under names that begin as its own; none takes the place of a
     file that is there.
     """
     path = Path(path)
@@ -35,13 +35,14 @@ def export_job(job: DocumentObject, path: Path | str) -> Path:
     try:
         with job_inputs.scratch_folder() as scratch:
             data = job_inputs.to_data(job, folder, scratch)
-            for holder in (data["stock"], *data["cell"]["bodies"]):
-                if "file" not in holder:
+            holders = [(one, "file") for one in (data["stock"], *data["cell"]["bodies"])]
+            for holder, key in [*holders, (data["stock"], "left_by")]:
+                if key not in holder:
                     continue
-                file = Path(holder["file"])
+                file = Path(holder[key])
                 if os.path.realpath(file.parent) == os.path.realpath(scratch):
                     file = _kept(file.read_bytes(), folder / f"{path.stem}_{file.name}")
-                holder["file"] = _relative(file, folder)
+                holder[key] = _relative(file, folder)
         write_whole(path, (json.dumps(data, allow_nan=False) + "\n").encode())
     except OSError as error:
         raise cannot_be_written(path, error) from None
@@ -161,8 +162,8 @@ def _open_stock(
     if "left_by" in data:
         raise InputError(
             "objects.left_by",
-            "{key}: a document has no stock that an earlier run left; run this job on the command line, and import its "
-            "result",
+            "{key}: what an earlier run left cannot be opened in a document; run this job on the command line and import "
+            "its result, or set the stock there to what another of its jobs leaves",
             key="stock.left_by",
         )
     from_job(stock, stocks.KEYS, {"stock": data})

@@ -193,7 +193,7 @@ def _faces(brep: str) -> list[PartFace]:
 
 
 def _without_file(data: Json) -> dict[str, Any]:
-    return {key: value for key, value in data.items() if key != "file"}
+    return {key: value for key, value in data.items() if key not in ("file", "left_by")}
 
 
 def tool_paths(job: DocumentObject) -> list[core.ToolPath]:

@@ -21,10 +21,11 @@ from . import (
     stock as stocks,
 )
 from .creation import called, make_child, removed_on_error
-from .job_data import child, children
+from .job_data import child, children, required
 from .kinds import Document, DocumentObject, Faces, Links
 from .properties import set_by_name
-from .simulation import simulated
+from .proxy import type_of
+from .simulation import Simulation, simulated
 
 
 def make_job(
@@ -67,14 +68,17 @@ def make_job(
 def make_stock(
     job: DocumentObject, source: DocumentObject | Path | str | None = None, **properties: Any
 ) -> DocumentObject:
-    """Adds the stock to a job, or changes the one it has. ``source``: a Part or Mesh object, or a
-    mesh's file; its kind follows from it.
+    """Adds the stock to a job, or changes the one it has. ``source``: a Part or Mesh object, a
+    mesh's file, or the job (or its Simulation) that leaves it; its kind follows from it.
     """
     if source is not None:
         if isinstance(source, (str, Path)):
             properties = {"Kind": "mesh", "File": str(Path(source).absolute()), **properties}
         else:
+            if type_of(source) == job_object.BeltGrindingJob.TYPE:
+                source = required(source, Simulation, "result")
             kind = "mesh" if hasattr(source, "Mesh") else "solid"
+            kind = "left" if hasattr(source, "HeightField") else kind
             properties = {"Kind": kind, "Source": source, **properties}
     label = FreeCAD.Qt.translate("BeltGrinding", "Stock")
     return make_child(job, stocks.Stock, "Stock", label, properties)

@@ -1,15 +1,17 @@
-"""The stock in the document: a uniform allowance, a solid or a mesh."""
+"""The stock in the document: a uniform allowance, a solid, a mesh, or what another job leaves."""
 
 from __future__ import annotations
 
 import hashlib
 import os
+import shutil
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 from ..engine import InputError
 from ..job.workpiece import OwnBrep
+from .fields import field_of
 from .geometry import export_solid, faces_digest, geometry_digest, placed_shape, placement_to_job
 from .kinds import DocumentObject, PartShape
 from .properties import Key, add_keys, check_limits, get_value
@@ -27,16 +29,22 @@ USED = {
     "allowance": {"Kind", "Allowance"},
     "solid": {"Kind", "Deflection", "SearchAbove", "SearchBelow"},
     "mesh": {"Kind", "FileUnit", "SearchAbove", "SearchBelow"},
+    "left": {"Kind"},
 }
 LINKS = (  # name, kind, group, text
-    ("Source", "LinkGlobal", "Stock", "the Part or Mesh object that is the stock"),
+    (
+        "Source",
+        "LinkGlobal",
+        "Stock",
+        "the Part or Mesh object that is the stock, or the result of another job, which leaves it",
+    ),
     ("File", "File", "Mesh", "a mesh's file (STL, PLY, OBJ) in place of an object"),
     ("FilePlacement", "Placement", "Mesh", "where the file's mesh lies in the document"),
 )
 
 
 class Stock(Proxy):
-    """Proxy. ``Source`` is a Part or a Mesh object; ``File`` is a mesh's file in its place."""
+    """Proxy. ``Source`` is a Part or a Mesh object, or another job's Simulation; ``File`` is a mesh's file in its place."""
 
     TYPE = "BeltGrinding::Stock"
     VIEW = "StockView"
@@ -55,6 +63,8 @@ class Stock(Proxy):
                 _require_solid(obj)
             elif obj.Kind == "mesh":
                 _require_mesh(obj)
+            elif obj.Kind == "left":
+                _require_result(obj)
 
     def settings(self, obj: DocumentObject) -> dict[str, Any]:
         """The part of a job under 'stock' that needs no geometry."""
@@ -74,12 +84,15 @@ class Stock(Proxy):
             return f"{file} {obj.FilePlacement.toMatrix().A}"
         if obj.Source is None:
             return "none"
+        if hasattr(obj.Source, "HeightField"):
+            return str(obj.Source.Fingerprint)
         if hasattr(obj.Source, "Mesh"):
             return geometry_digest(obj.Source)
         return faces_digest(_shape(obj).Faces)
 
     def to_job(self, obj: DocumentObject, folder: Path | str) -> dict[str, Any]:
-        """The part of a job under 'stock'; a mesh of the document is written to ``folder``."""
+        """The part of a job under 'stock'; a mesh of the document, and what another job
+        leaves, are written to ``folder``."""
         job = self.settings(obj)
         if obj.Kind == "solid":
             job["brep"] = OwnBrep(_shape(obj).exportBrepToString())
@@ -91,6 +104,8 @@ class Stock(Proxy):
             else:
                 job["file"] = obj.File
                 job["placement"] = placement_to_job(obj.FilePlacement)
+        elif obj.Kind == "left":
+            job.update(_left(obj, folder))
         return job
 
 
@@ -129,6 +144,40 @@ def _require_mesh(obj: DocumentObject) -> None:
             object=obj.Label,
             source=obj.Source.Label,
         )
+
+
+def _require_result(obj: DocumentObject) -> None:
+    source, job = obj.Source, obj.getParentGroup()
+    if source is None or not hasattr(source, "HeightField"):
+        raise InputError(
+            "objects.no_left",
+            "{object}: choose the result of the job that grinds before",
+            object=obj.Label,
+        )
+    if job is not None and source.getParentGroup() == job:
+        raise InputError(
+            "objects.left_by_itself",
+            "{object}: a job does not begin with what it leaves itself; choose another job's result",
+            object=obj.Label,
+        )
+
+
+def _left(obj: DocumentObject, folder: Path | str) -> dict[str, Any]:
+    """What the job before leaves, written to ``folder``; on the whole it is no thicker than its thickest place, which
+    is what collisions are looked for with. Raises InputError."""
+    _require_result(obj)
+    before = obj.Source.getParentGroup()
+    field = field_of(obj.Source)
+    if field is None or obj.Source.OutOfDate:
+        raise InputError(
+            "objects.left_out_of_date",
+            "{object}: {job} is not simulated as it is now; simulate it first",
+            object=obj.Label,
+            job=before.Label if before is not None else obj.Source.Label,
+        )
+    path = Path(folder) / "left.h5"
+    shutil.copyfile(obj.Source.HeightField, path)
+    return {"left_by": str(path), "allowance_mm": max(0.0, float(max(field.height, default=0.0)))}
 
 
 def _shape(obj: DocumentObject) -> PartShape:

@@ -8,6 +8,8 @@ from ...engine import Cancelled, InputError
 from ...objects import stock_scan
 from ...objects.geometry import placement_from_job
 from ...objects.kinds import DocumentObject
+from ...objects.proxy import type_of
+from ...objects.simulation import Simulation
 from ...scan import start as scan_start
 from ..common.compat import QtGui, translate
 from ..common.figures import length_text
@@ -31,15 +33,11 @@ class StockPanel(Panel):
             "allowance": translate("BeltGrinding", "Uniform allowance"),
             "solid": translate("BeltGrinding", "Solid"),
             "mesh": translate("BeltGrinding", "Mesh (a scan)"),
+            "left": translate("BeltGrinding", "What another job leaves"),
         }
-        bodies = [
-            one
-            for one in obj.Document.Objects
-            if hasattr(one, "Shape") or (hasattr(one, "Mesh") and not hasattr(one, "Simulation"))
-        ]
         form.add("Kind", translate("BeltGrinding", "Kind"), kinds)
         form.add("Allowance", translate("BeltGrinding", "Allowance"))
-        form.add("Source", translate("BeltGrinding", "Object"), bodies)
+        form.add("Source", translate("BeltGrinding", "Object"), [])
         form.add(
             "File",
             translate("BeltGrinding", "or file"),
@@ -122,6 +120,7 @@ class StockPanel(Panel):
         self.scan.setVisible(
             self.obj.Kind == "mesh" and self.obj.Source is None and bool(self.obj.File)
         )
+        self.fields.offer("Source", *self._sources())
         rays = {"Kind", "Source", "SearchAbove", "SearchBelow"}
         files = {"File", "FileUnit", "FilePlacement"} if self.obj.Source is None else set()
         self.fields.show_rows(
@@ -129,12 +128,34 @@ class StockPanel(Panel):
                 "allowance": {"Kind", "Allowance"},
                 "solid": rays | {"Deflection"},
                 "mesh": rays | files,
+                "left": {"Kind", "Source"},
             }[self.obj.Kind]
         )
         self.tell("")
 
+    def _sources(self) -> tuple[list[DocumentObject], list[str]]:
+        """What the stock can be by its kind, and what that is called: a result by its job."""
+        obj, others = self.obj, self.obj.Document.Objects
+        if obj.Kind == "left":
+            results = [one for one in others if type_of(one) == Simulation.TYPE]
+            jobs = [one.getParentGroup() for one in results]
+            found = [
+                (one, job.Label)
+                for one, job in zip(results, jobs)
+                if job is not None and job != obj.getParentGroup()
+            ]
+        else:
+            found = [
+                (one, one.Label)
+                for one in others
+                if hasattr(one, "Shape") or hasattr(one, "Mesh") and not hasattr(one, "Simulation")
+            ]
+        return [one for one, _ in found], [label for _, label in found]
+
     def check(self) -> None:
         obj = self.obj
+        if obj.Kind == "left" and obj.Source not in self._sources()[0]:
+            raise InputError("gui.choose_left", "Choose the job that grinds before.")
         if obj.Kind == "solid" and not hasattr(obj.Source, "Shape"):
             raise InputError("gui.choose_solid", "Choose the solid that is the stock.")
         if obj.Kind == "mesh" and not (hasattr(obj.Source, "Mesh") or obj.File):

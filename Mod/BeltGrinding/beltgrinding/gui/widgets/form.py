@@ -108,6 +108,7 @@ class Form(QtGui.QGroupBox):
         super().__init__(title)
         self.obj = obj
         self.rows: dict[str, tuple[Widget, Widget]] = {}  # property name: (label, widget)
+        self.choices: dict[str, list[DocumentObject | None]] = {}  # of links, by property
         self.changed = lambda: None  # called after a property was set
         self.unsigned: set[str] = set()  # that must not be negative, whatever the schema says
         # property name: what is wrong with what stands in its field, as typed, as told, as shown
@@ -322,13 +323,28 @@ class Form(QtGui.QGroupBox):
 
     def _link(self, name: str, objects: Sequence[DocumentObject]) -> Widget:
         widget = steady(QtGui.QComboBox())
-        choices = [None, *objects]
-        for one in choices:
-            widget.addItem(one.Label if one else translate("BeltGrinding", "(none)"))
-        current = getattr(self.obj, name)
-        widget.setCurrentIndex(choices.index(current) if current in choices else 0)
-        widget.currentIndexChanged.connect(lambda i: self._set(name, choices[i]))
+        self._offer(widget, name, objects, [one.Label for one in objects])
+        widget.currentIndexChanged.connect(lambda i: self._set(name, self.choices[name][i]))
         return widget
+
+    def _offer(
+        self, widget: Widget, name: str, objects: Sequence[DocumentObject], texts: Sequence[str]
+    ) -> None:
+        self.choices[name] = [None, *objects]
+        widget.clear()
+        widget.addItems([translate("BeltGrinding", "(none)"), *texts])
+        current = getattr(self.obj, name)
+        widget.setCurrentIndex(
+            self.choices[name].index(current) if current in self.choices[name] else 0
+        )
+
+    def offer(self, name: str, objects: Sequence[DocumentObject], texts: Sequence[str]) -> None:
+        """Other objects that a link can take, under these texts; one that is not among them stays until another is
+        chosen."""
+        widget = self.rows[name][1]
+        widget.blockSignals(True)
+        self._offer(widget, name, objects, texts)
+        widget.blockSignals(False)
 
     def _file(self, name: str, pattern: str) -> Widget:
         widget = Gui.UiLoader().createWidget("Gui::FileChooser")

@@ -27,7 +27,8 @@ def test_the_tutorial_can_be_walked_and_its_figures_are_right():
         number, unit = text.split()
         found, found_unit = figures[name].split()
         # Another Debian's CAD kernel samples the surface a little differently.
-        assert unit == found_unit and abs(float(number) - float(found)) < 0.1, (name, figures[name])
+        assert unit == found_unit
+        assert float(number) == pytest.approx(float(found), abs=0.1), name
     for name in ("36 N", "30 N", "0.03 mm"):
         told = [float(text) for text in re.findall(r"([\d.]+) %", page)]
         assert min(abs(float(figures[name].split()[0]) - share) for share in told) < 0.1, name

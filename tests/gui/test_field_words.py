@@ -15,6 +15,7 @@ pytestmark = pytest.mark.freecad(window=True)
 # Of the command line, of C++ and Python callers, of folders of results, clusters: no window asks for them.
 ELSEWHERE = {"cli", "call", "studies", "hdf5", "ply", "reporting", "simulation.not_of_a_run"}
 ELSEWHERE |= {"planning.not_of_a_plan", "frames.quaternion_and_abc", "contact", "scan.no_module"}
+ELSEWHERE |= {"job.no_left_by"}  # a document gives it
 ELSEWHERE |= {"calibration.wear_without_job", "robot_program", "job.lay_direction"}
 ELSEWHERE |= {
     "planning.belt_law",

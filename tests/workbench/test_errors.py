@@ -60,7 +60,7 @@ MISTAKES = {
         changed(stock={"kind": "air"}),
         "base.not_one_of",
         {"key": "stock.kind"},
-        "{job}: stock.kind: 'air' gehört nicht zu ['allowance', 'solid', 'mesh']",
+        "{job}: stock.kind: 'air' gehört nicht zu ['allowance', 'solid', 'mesh', 'left']",
     ),
     "two of one": (
         changed(design={"file": "part.step"}),

@@ -231,13 +231,19 @@ Pressing::State Pressing::let_go() {
     return State::kNoContact;
 }
 
+bool Pressing::touch_again(const SampleBlocks& blocks, int& searches) {
+    // First the surface may have fallen away from where it was at the last pose; then cells may
+    // carry the flanks of a nose that is thinner than they are beyond its crown.
+    const bool by_samples = searches == 1 && !tool_.flat;
+    if ((searches > 0 && !by_samples) || !find_touch(blocks, by_samples)) return false;
+    ++searches;
+    return true;
+}
+
 Pressing::State Pressing::press_force(const SampleBlocks& blocks, double force) {
     if (force <= 0.0) return let_go();
     int searches = 0;
-    if (!warm_) {
-        if (!find_touch(blocks, false)) return let_go();
-        ++searches;
-    }
+    if (!warm_ && !touch_again(blocks, searches)) return let_go();
     for (int i = 0;; ++i) {
         localise(blocks, tool_.margin);
         map_gap(blocks, tool_.margin, kPressable);
@@ -246,11 +252,7 @@ Pressing::State Pressing::press_force(const SampleBlocks& blocks, double force) 
         const bool yields =
             tool_.flat && !map_.empty() && std::isfinite(map_.lowest()) && solution_.force <= 0.0;
         if (!yields && (map_.empty() || solution_.force <= 0.0)) {
-            // The surface fell away from where it was at the last pose; or cells carry the flanks
-            // of a nose that is thinner than they are beyond its crown.
-            const bool by_samples = searches == 1 && !tool_.flat;
-            if ((searches > 0 && !by_samples) || !find_touch(blocks, by_samples)) return let_go();
-            ++searches;
+            if (!touch_again(blocks, searches)) return let_go();
             continue;
         }
         const Wanted wanted = within_limits(yields ? std::numeric_limits<double>::infinity()

@@ -146,6 +146,8 @@ class Pressing final : public Keeps<Latest<PressingMemory>> {
     void solve_held(const SampleBlocks& blocks);
     void solve(const SampleBlocks& blocks, ContactProblem problem);
     bool find_touch(const SampleBlocks& blocks, bool by_samples);
+    /// `find_touch` in the ways that are left after so many; counts it.
+    bool touch_again(const SampleBlocks& blocks, int& searches);
     /// Where force control wants the wheel, mm along z from the pose, or the limit that it meets.
     struct Wanted {
         double place;

@@ -60,7 +60,7 @@ def test_the_second_job_begins_where_the_first_ends():
     result.write("out")
     assert not beltgrinding.import_result(second, "out").OutOfDate
 
-    # What the first leaves changes: the second is told.
+    # Once the first leaves something else, the second is out of date.
     machine = next(one for one in first.Group if hasattr(one, "Force"))
     machine.Force = machine.Force * 1.5
     doc.recompute()

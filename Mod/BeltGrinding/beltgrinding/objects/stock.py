@@ -9,6 +9,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ..engine import InputError
 from ..job.workpiece import OwnBrep
 from .fields import field_of
@@ -177,7 +179,7 @@ def _left(obj: DocumentObject, folder: Path | str) -> dict[str, Any]:
         )
     path = Path(folder) / "left.h5"
     shutil.copyfile(obj.Source.HeightField, path)
-    return {"left_by": str(path), "allowance_mm": max(0.0, float(max(field.height, default=0.0)))}
+    return {"left_by": str(path), "allowance_mm": float(np.max(field.height, initial=0.0))}
 
 
 def _shape(obj: DocumentObject) -> PartShape:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import html
 
 import FreeCAD
@@ -48,6 +49,10 @@ def link(box: Widget, text: str) -> None:
         box.close()
         go_to(document, address)
 
+    with contextlib.suppress(
+        RuntimeError
+    ):  # of an earlier message in this box, of another document
+        label.linkActivated.disconnect()
     label.linkActivated.connect(follow)
 
 

@@ -106,6 +106,48 @@ def test_the_answer_covers_the_truth(converged):
     assert converged.field.spacing == pytest.approx(0.6)  # the result is that of the job as given
 
 
+def test_errors_of_samples_are_those_of_figures():
+    values = np.array(
+        [
+            (1.0, 1.1, 1.15),
+            (1.0, 1.1, 1.16),
+            (1.0, 1.1, 1.05),
+            (1.0, 1.1, 1.3),
+            (1.0, 1.0, 1.0),
+            (1.2, 1.1, 1.1),
+        ]
+    )
+    levels = (*values.T,)
+    for given in (levels, (None, *levels[1:]), (*levels[:2], None)):
+        wanted = [
+            convergence.estimate(*(None if level is None else level[k] for level in given))["error"]
+            for k in range(len(values))
+        ]
+        assert convergence.errors(*given) == pytest.approx(wanted)
+    assert convergence.errors(None, levels[1], None) is None
+
+
+def test_errors_of_samples_cover_the_truth(converged):
+    told = converged.convergence["samples"]
+    assert 0.0 < told["p50_mm"] < told["p95_mm"] < told["p99_mm"] < told["max_mm"]
+    finer = runs.run(convergence.scaled(convergence.scaled(converged.job, "fine"), "fine"))
+    field = converged.field
+    truth = field.copy()
+    core.apply_left(truth, finer.field, False, core.RunContext())
+    off = abs(np.asarray(truth.height) - np.asarray(field.height))
+    for key, share in (("p50_mm", 0.5), ("p95_mm", 0.95), ("p99_mm", 0.99)):
+        areas = np.asarray(field.areas)
+        assert areas[off <= told[key]].sum() >= 0.97 * share * areas.sum(), key
+    # The plate is ground well within its tolerance: the errors leave nothing open.
+    assert told["undecided_share"] == 0.0
+    lower = float(np.median(field.height))
+    narrow = dict(
+        converged.job, inspection={**converged.job["inspection"], "tolerance_mm": [lower, 0.4]}
+    )
+    answer = convergence.converge(jobs.validate(narrow)).convergence
+    assert 0.0 < answer["samples"]["undecided_share"] < 1.0
+
+
 def test_settings_that_are_too_coarse_are_told_with_the_one_to_refine():
     job = plate_job()
     job["belt_machine"]["wheel"]["crown_radius_mm"] = 40
@@ -151,6 +193,11 @@ def test_the_narrowest_band_counts():
 
 def test_another_tolerance_is_judged_without_another_run(converged):
     narrow = convergence_record.assessed(converged.convergence, {"tolerance_mm": [-1e-6, 1e-6]})
+    samples = converged.convergence["samples"]
+    assert narrow["samples"] == {**samples, "undecided_share": None}
+    zoned = {**converged.job["inspection"], "zones": [{"faces": [1], "tolerance_mm": [0, 1]}]}
+    zoned = convergence_record.assessed(converged.convergence, zoned)
+    assert zoned["samples"]["undecided_share"] is None
     assert converged.convergence["fine_enough"] and not narrow["fine_enough"]
     names = {one["name"] for one in narrow["quantities"]}
     assert "mean" in names and "in_tolerance" not in names

@@ -59,7 +59,7 @@ def sentences(convergence: Json, words: Language) -> list[str]:
             "Yes: because of them no depth is off by more than about {error} mm.",
             error=words.number(most, 4),
         )
-        return [said, rule]
+        return [said, rule, *_of_samples(convergence, words)]
     bad = [one for one in convergence["quantities"] if not one["ok"]]
     first = worst(convergence)
     said = words(
@@ -81,7 +81,25 @@ def sentences(convergence: Json, words: Language) -> list[str]:
             setting=words(SETTINGS[most]),
             change=words.number(settings[most], 4),
         )
-    return [text for text in (said, rule, advice) if text]
+    return [text for text in (said, rule, advice, *_of_samples(convergence, words)) if text]
+
+
+def _of_samples(convergence: Json, words: Language) -> list[str]:
+    found = convergence.get("samples")
+    if not found:
+        return []
+    said = words(
+        "At 95 % of the area the deviation is off by at most {most} mm, at 99 % by {nearly_all} mm.",
+        most=words.number(found["p95_mm"], 4),
+        nearly_all=words.number(found["p99_mm"], 4),
+    )
+    if found["undecided_share"] is None:
+        return [said]
+    open_ = words(
+        "At {share} % of the area this leaves open whether it is in tolerance.",
+        share=words.number(100.0 * found["undecided_share"], 2),
+    )
+    return [said, open_]
 
 
 def name_of(one: Json, words: Language) -> str:

@@ -17,13 +17,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..base.kinds import Context, Facts, Json
+from ..base.kinds import Context, Facts, Floats, Json
 from ..base.messages import fact_data
 from ..engine import InputError, core
+from ..inspection import verdict as verdicts
 from ..job import resolution, spacing
 from ..job.workpiece import check_faces, read_design
 from . import run as runs
-from .convergence_record import BAND_SHARE, LEVELS, assessed, digest
+from .convergence_record import BAND_SHARE, LEVELS, assessed, digest, limits_digest
 
 if TYPE_CHECKING:
     from .result import Result
@@ -39,6 +40,7 @@ FAILED = {  # a note on one that failed
     "coarse": ("simulation.no_coarse_level", "the coarse level could not be run: {reason}"),
     "fine": ("simulation.no_fine_level", "the fine level could not be run: {reason}"),
 }
+OF_AREA = {"p50_mm": 0.5, "p95_mm": 0.95, "p99_mm": 0.99, "max_mm": 1.0}  # errors below which it is
 COST = {"coarse": 0.125, "given": 1.0, "fine": 8.0}  # of a run: samples and steps, by the ratio
 ORDERS = (0.5, 2.0)  # observed orders outside are taken as these: beyond, they are chance
 SAFETY = 1.25  # on three levels (Roache)
@@ -67,6 +69,7 @@ def converge(job: Json, context: Context = None) -> Result:
         job, _ = spacing.settled(job, shape, [], context.part(0.0, 0.0))
     whole, so_far = sum(COST.values()) + 2.0, 0.0
     levels: dict[str, dict[str, Any] | None] = {}
+    heights: dict[str, Floats] = {}
     result: Result | None = None
     notes: Facts = []
     for level in ("given", "coarse", "fine"):
@@ -88,6 +91,8 @@ def converge(job: Json, context: Context = None) -> Result:
             assert found is not None
             levels[level] = _level(found, time.perf_counter() - start)
             result = found if level == "given" else result
+            assert result is not None
+            heights[level] = _heights_at(result.field, found.field)
         so_far = end
         found = None  # a fine field is large
     assert result is not None
@@ -98,6 +103,7 @@ def converge(job: Json, context: Context = None) -> Result:
         "band_share": BAND_SHARE,
         "levels": {name: _settings(job, name, levels[name]) for name in LEVELS},
         "quantities": _quantities(levels),
+        "samples": _of_samples(result, heights),
         "settings": None,
         "notes": notes,
     }
@@ -196,6 +202,57 @@ def estimate(coarse: float | None, given: float, fine: float | None) -> dict[str
     grown = RATIO ** min(max(order, ORDERS[0]), ORDERS[1])
     error = SAFETY * abs(step) * grown / (grown - 1.0)
     return {"behaviour": "monotonic", "order": order, "error": error}
+
+
+def _heights_at(field: core.HeightField, other: core.HeightField) -> Floats:
+    """(samples,) mm that another field of the same design has at the samples of ``field``."""
+    if other is field:
+        return np.array(field.height, dtype=float)
+    at = field.copy()
+    core.apply_left(at, other, False, core.RunContext())
+    return np.array(at.height, dtype=float)
+
+
+def errors(coarse: Floats | None, given: Floats, fine: Floats | None) -> Floats | None:
+    """(n,) as ``estimate`` has it, of heights (n,) at three levels."""
+    if coarse is None or fine is None:
+        if coarse is fine is None:
+            return None
+        factor = RATIO if coarse is None else 1.0
+        other = fine if coarse is None else coarse
+        assert other is not None
+        return SAFETY_TWO * factor / (RATIO - 1.0) * np.asarray(abs(given - other))
+    step, before = fine - given, given - coarse
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shrinks = before / step
+        grown = np.clip(shrinks, *(RATIO**order for order in ORDERS))
+        settled = SAFETY * abs(step) * grown / (grown - 1.0)
+    spread = np.ptp([coarse, given, fine], axis=0)
+    return np.where(shrinks > 1.0, settled, spread)
+
+
+def _of_samples(result: Result, heights: Mapping[str, Floats]) -> dict[str, Any] | None:
+    """The errors of the heights over the area, and of how much of it they leave open whether it is in tolerance."""
+    error = errors(heights.get("coarse"), heights["given"], heights.get("fine"))
+    if error is None:
+        return None
+    field = result.field
+    seen = (np.asarray(field.flags) & core.MISSED) == 0
+    height, areas = heights["given"][seen], np.asarray(field.areas, dtype=float)[seen]
+    error = error[seen]
+    lower, upper = (limit[seen] for limit in verdicts.limits(result.job, field))
+    nearest = np.minimum(abs(height - lower), abs(height - upper))
+    order = np.argsort(error)
+    summed = np.cumsum(areas[order]) / areas.sum()
+    found = {
+        name: float(error[order][min(np.searchsorted(summed, share), len(error) - 1)])
+        for name, share in OF_AREA.items()
+    }
+    return {
+        **found,
+        "undecided_share": float(areas[nearest <= error].sum() / areas.sum()),
+        "limits_sha256": limits_digest(result.job["inspection"]),
+    }
 
 
 def _blame(

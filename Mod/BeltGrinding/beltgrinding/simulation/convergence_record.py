@@ -19,7 +19,7 @@ SHARE_LIMIT = 0.01  # of the area, and of the removed volume
 
 def assessed(convergence: Json, inspection: Json) -> dict[str, Any]:
     """A copy of an answer, assessed by the tolerances of a job's ``inspection``: the errors hold for any.
-    The share in tolerance is left out where it was that of another tolerance.
+    The share in tolerance, and that which is open, are left out where they were those of another tolerance.
     """
     lower, upper = narrowest_band(inspection)
     limits = {"mm": BAND_SHARE * (upper - lower), "share": SHARE_LIMIT}
@@ -31,9 +31,13 @@ def assessed(convergence: Json, inspection: Json) -> dict[str, Any]:
         limit = limits.get(one["unit"], SHARE_LIMIT * abs(one["values"][1]))
         ok = one["error"] is not None and one["error"] <= limit
         quantities.append({**one, "limit": limit, "ok": ok})
+    samples = convergence.get("samples")
+    if samples and samples["limits_sha256"] != limits_digest(inspection):
+        samples = {**samples, "undecided_share": None}
     return {
         **convergence,
         "quantities": quantities,
+        "samples": samples,
         "fine_enough": all(one["ok"] for one in quantities),
     }
 
@@ -53,6 +57,12 @@ def digest(job: Json) -> str:
     """SHA-256 of what the heights of a validated job depend on: all but its inspection."""
     job = {key: value for key, value in job.items() if key != "inspection"}
     return hashlib.sha256(inputs.canonical(job)).hexdigest()
+
+
+def limits_digest(inspection: Json) -> str:
+    """SHA-256 of what decides which samples are in tolerance."""
+    limits = {"tolerance_mm": inspection["tolerance_mm"], "zones": inspection.get("zones", [])}
+    return hashlib.sha256(inputs.canonical(limits)).hexdigest()
 
 
 def read(path: Path, job: Json) -> dict[str, Any] | None:

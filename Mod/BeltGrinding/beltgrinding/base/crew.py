@@ -167,5 +167,9 @@ class Crew:
 
 def deadline(seconds: float) -> Callable[[], bool]:
     """For ``over``: says so that many seconds from now."""
-    end = time.monotonic() + seconds
+    return passed(time.monotonic() + seconds)
+
+
+def passed(end: float) -> Callable[[], bool]:
+    """For ``over``: says so from ``end`` of the monotonic clock on, in seconds."""
     return lambda: time.monotonic() >= end

@@ -23,11 +23,13 @@ from ..job.workpiece import read_design
 from ..programs.program import Program
 from ..raster import raster_path
 from ..raster.proposal import FORCE_LEAST
-from ..simulation import convergence, run as runs
+from ..simulation import run as runs
 from . import reasons, rounds
 from .step import force_exponent
 
 TRIES = 7  # passes, at most
+ROUNDS = 3  # of a rough plan: one says too little where the force is far off
+SAMPLES = 6_000  # of a rough plan, at most, about
 GAIN = 0.003  # of the area, for other passes to be better
 MATTERS = 0.01  # of the area: a reason for less is let be
 CLOSER = 0.7  # step-over against the one before
@@ -38,22 +40,15 @@ MOST_SMOOTHING = 4.0  # of the contact's length
 MOST_REPEATS = 20
 BORDER_FORCE = 0.15  # of the force, at borders
 LEAST_FORCE, FORCES = 0.02, 40  # of the force that is set by hand; so many are looked at
+FORCE = "force"  # the change of a force that is set by hand
+GENTLED, FAR_OFF = (
+    2,
+    0.05,
+)  # so often for a gain of that share of the area, before passes are compared with others
 MOST_OF = 0.9  # of the area that is not done at the least feed: the repeats are for it
 
 # mm (poses,) of the zones of a program as its file will have them; -1: the job's default.
 Zones: TypeAlias = Callable[[Program], Floats]
-
-
-class Fidelity(NamedTuple):
-    """How finely passes are simulated that are tried."""
-
-    rounds: int
-    samples: int  # at most, about
-    halved: bool  # spacing, step and cells are doubled together where samples are more; else the spacing alone grows
-
-
-QUICK = Fidelity(3, 60_000, True)
-COARSE = Fidelity(1, 6_000, False)
 
 
 class Tried(NamedTuple):
@@ -150,19 +145,17 @@ def attempt(
     data: Json,
     move: Move,
     settings: Json,
-    fidelity: Fidelity = QUICK,
     zones: Zones | None = None,
     context: core.RunContext | None = None,
 ) -> Tried:
     """Lays passes on a job (validated, in its time) and plans them roughly. Raises InputError, Cancelled."""
-    return attempted(data, move, settings, fidelity, zones, context)[0]
+    return attempted(data, move, settings, zones, context)[0]
 
 
 def attempted(
     data: Json,
     move: Move,
     settings: Json,
-    fidelity: Fidelity,
     zones: Zones | None = None,
     context: core.RunContext | None = None,
 ) -> tuple[Tried, rounds.Plan]:
@@ -173,10 +166,25 @@ def attempted(
     laid = lay(data, wanted, settings, context.part(0.0, 0.2), zones)
     # The way is found once: other passes go the same.
     wanted = {**wanted, "along": laid["along"], "direction": list(laid["direction"])}
-    job = _coarser(rounds.settled(with_path(data, laid), context), laid["area_mm2"], fidelity)
-    quick = {"rounds": fidelity.rounds, "check": False, "levels": 0}
-    plan = rounds.plan(job, {**settings, **quick}, context.part(0.2, 1.0))
+    job = _coarser(rounds.settled(with_path(data, laid), context), laid["area_mm2"])
+    rough = {"rounds": ROUNDS, "check": False, "levels": 0}
+    plan = rounds.plan(job, {**settings, **rough}, context.part(0.2, 1.0))
     return _seen(move[0], machine, wanted, laid, plan, settings), plan
+
+
+def gentled(data: Json, move: Move, settings: Json, zones: Zones | None = None) -> Tried:
+    """As ``attempt``; where a force that is set by hand is far too great, with less of it: else ways that remove more would all
+    seem worse. Raises InputError."""
+    best = attempt(data, move, settings, zones)
+    for _ in range(GENTLED):
+        less = [(gain, one) for gain, one in others(best) if one[0] == FORCE and gain > FAR_OFF]
+        if not less:
+            break
+        one = attempt(data, less[0][1], settings, zones)
+        if one.in_tolerance <= best.in_tolerance:
+            break
+        best = one
+    return best._replace(change=move[0])
 
 
 def expected(job: Json, context: core.RunContext | None = None) -> float:
@@ -187,18 +195,16 @@ def expected(job: Json, context: core.RunContext | None = None) -> float:
     shape = read_design(design, context.part(0.0, 0.0))
     faces = design.faces or range(1, shape.face_count + 1)
     area = sum(shape.face_area(face - 1) for face in faces)
-    result = runs.run(_coarser(job, area, COARSE), context, resume=False)
+    result = runs.run(_coarser(job, area), context, resume=False)
     return float(result.summary["in_tolerance_area_share"])
 
 
-def _coarser(job: Json, area: float, fidelity: Fidelity) -> Json:
+def _coarser(job: Json, area: float) -> Json:
     sampling = typed(job).sampling
     spacing = sampling.spacing_mm
-    if area <= fidelity.samples * spacing**2:
+    if area <= SAMPLES * spacing**2:
         return job
-    if fidelity.halved:
-        return convergence.scaled(job, "coarse")
-    factor = math.sqrt(area / fidelity.samples) / spacing
+    factor = math.sqrt(area / SAMPLES) / spacing
     wider = {
         "spacing_mm": factor * spacing,
         "edge_spacing_mm": factor * sampling.edge_spacing_mm,
@@ -245,34 +251,34 @@ def climb(
     data: Json,
     first: Move,
     settings: Json,
-    fidelity: Fidelity = QUICK,
     zones: Zones | None = None,
-    tries: int = 0,
     moves: tuple[Moves, ...] = (),
     told: Callable[[dict[str, Any]], object] | None = None,
     context: core.RunContext | None = None,
     before: Tried | None = None,
+    over: Callable[[], bool] | None = None,
 ) -> tuple[Tried, list[dict[str, Any]]]:
-    """Climb from passes to better ones. Returns (the best of at most ``tries``, 0: ``TRIES``; a row of figures for each).
+    """Climb from passes to better ones. Returns (the best of at most ``TRIES``; a row of figures for each).
 
     Begins with ``first``, or with ``before``, which was tried, and goes on from the best with what may mend it, the
-    likeliest first. ``moves``: what may be tried besides ``others``. Raises InputError where ``first`` cannot be laid,
+    likeliest first. ``moves``: what may be tried besides ``others``; ``over()``: whether the best so far is enough. Raises InputError where ``first`` cannot be laid,
     Cancelled.
     """
     context = context or core.RunContext()
-    tries = tries or TRIES
     best, rows = before, list[dict[str, Any]]()
     seen = set[str]()
     queue: list[Move] = [first] if before is None else _following(before, moves)
-    while queue and len(rows) < tries:
+    while queue and len(rows) < TRIES:
+        if best is not None and over is not None and over():
+            break
         move = queue.pop(0)
         key = repr((sorted(move[1].items(), key=str), sorted(move[2].items(), key=str)))
         if key in seen:
             continue
         seen.add(key)
-        part = context.part(len(rows) / tries, (len(rows) + 1) / tries)
+        part = context.part(len(rows) / TRIES, (len(rows) + 1) / TRIES)
         try:
-            one = attempt(data, move, settings, fidelity, zones, part)
+            one = attempt(data, move, settings, zones, part)
         except InputError:
             if best is None:
                 raise
@@ -324,7 +330,7 @@ def others(one: Tried) -> list[tuple[float, Move]]:
     by_hand = machine.control == "force" and not wanted["force_N"]
     if gain > MATTERS and by_hand and force < machine.force_N:
         # As likely as all that is cut too deep: it is the one thing that helps where the robot is slow everywhere.
-        gentler = ("force", {**one.machine, "force_N": force}, wanted)
+        gentler = (FORCE, {**one.machine, "force_N": force}, wanted)
         found.append((max(gain, one.below), gentler))
     if one.below > MATTERS and wanted["smoothing_mm"] < MOST_SMOOTHING * one.length_mm:
         smoother = max(SMOOTHER * wanted["smoothing_mm"], one.length_mm)

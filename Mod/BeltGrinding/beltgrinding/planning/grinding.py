@@ -19,8 +19,8 @@ from .limits import GENTLER
 
 GENTLE = 0.2  # of the force: the least where none is given, so that borders and ends of passes can be spared
 FINAL = 0.5  # of the time: the last plan
-SEARCHED = 0.9  # of the time: the search, whose plan is simulated once more
-AS_FOUND = {"rounds": 1, "goal": "tolerance"}  # a plan that begins with the feeds of a search
+SEARCHED = 0.9  # of the time: the search
+POLISHED = 2  # rounds of the plan that begins with the feeds of a search
 
 
 class Ground(NamedTuple):
@@ -64,11 +64,10 @@ def grind(
     data = rounds.settled(data, context)
     part = context.part(0.0, SEARCHED)
     found = searches.find(data, first, settings, search, zones, told, stop, part)
-    left = settings if settings["goal"] == "time" else {**settings, **AS_FOUND}
+    left = {**settings, "rounds": min(settings["rounds"], POLISHED)}
     rest = context.part(SEARCHED, 1.0)
     ground = _planned(data, found.best, left, rest, told, zones, found.rows)
     plan = ground.plan._replace(
-        rounds=[*found.rounds[:-1], ground.plan.rounds[-1]],
         settings={**ground.plan.settings, "rounds": settings["rounds"]},
     )
     return ground._replace(plan=plan, search=found.report())

@@ -98,10 +98,11 @@ def plan(
     told: Callable[[dict[str, Any]], object] | None = None,
     sources: Sequence[str | None] | None = None,
     start: tuple[Floats, Floats] | None = None,
+    over: Callable[[], bool] | None = None,
 ) -> Plan:
     """Plans the feeds of a validated job's programs. ``settings``: Resources/schema/plan.schema.json;
     ``told(round)``: is called after each round with its dict; ``sources``: as ``Commands`` takes them; ``start``: (feeds, factors on forces), a value a command, that the first round
-    tries in place of planning, from an earlier ``Plan`` of the same programs.
+    tries in place of planning, from an earlier ``Plan`` of the same programs; ``over()``: whether the best so far is enough.
 
     Returns a ``Plan``. It is never worse than the job: where no round brings more of the area into tolerance, the old
     feeds are given back, and ``better`` is false. Raises InputError (no tolerance, no stock, a tool that no feed
@@ -122,7 +123,7 @@ def plan(
     tries = settings["rounds"] + 1
     whole = tries + (CHECKS if settings["check"] else 0.0)
     trials = Trials(commands, settings, told, context)
-    best = _by_rounds(trials, old, start, tries, whole)
+    best = _by_rounds(trials, old, start, tries, whole, over)
     if settings["goal"] == "time":
         best = least_time.faster(trials, best)
     if settings["levels"]:
@@ -201,10 +202,15 @@ def in_time(job: Job | Json, settings: dict[str, Any]) -> tuple[Json, dict[str, 
 
 
 def _by_rounds(
-    trials: Trials, old: Floats, start: tuple[Floats, Floats] | None, tries: int, whole: float
+    trials: Trials,
+    old: Floats,
+    start: tuple[Floats, Floats] | None,
+    tries: int,
+    whole: float,
+    over: Callable[[], bool] | None,
 ) -> Trial:
     """The best ``Trial`` of at most ``tries``: simulates, plans from the best so far, and simulates again, as long as
-    that leads on. ``start``: as in ``plan``; ``whole``: how many simulations' time all of the planning takes.
+    that leads on. ``start``, ``over``: as in ``plan``; ``whole``: how many simulations' time all of the planning takes.
     """
     commands, settings, context = trials.commands, trials.settings, trials.context
     feeds, factors = old, np.ones(len(commands))
@@ -227,6 +233,7 @@ def _by_rounds(
             trials.forget(trial)
             reach *= NEARER_BY
         ends = number + 1 == tries or stalled >= STALLED
+        ends |= number > 0 and over is not None and over()
         found: dict[str, Any] = {}
         if number == 0 and start is not None and not ends:
             feeds, factors = start

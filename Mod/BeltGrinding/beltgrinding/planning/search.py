@@ -13,14 +13,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..base.crew import Answer, Call, Crew
+from ..base.crew import Answer, Call, Crew, passed
 from ..base.kinds import Context, Json, known
 from ..engine import InputError, core
+from ..job import resolution
 from ..job.typed import typed
 from ..job.workpiece import read_design
 from ..raster import reach_map
 from . import by_rules, rounds
-from .by_rules import COARSE, QUICK, Move, Tried, Zones
+from .by_rules import Move, Tried, Zones
 from .candidates import Seen, candidates, of_further
 from .moves import Moves
 
@@ -33,7 +34,8 @@ FINALS = 3  # full plans
 FAR_BEHIND = 0.1  # of the area: passes so far behind get no full plan
 GAIN = 0.005  # of the area
 ENOUGH = 0.995  # of the area: nothing else is tried
-COARSE_UNTIL, RULES_UNTIL = 0.4, 0.65  # of the budget
+COARSE_UNTIL, RULES_UNTIL, FULL_UNTIL = 0.4, 0.65, 0.9  # of the budget
+TO_END = 0.1  # of the budget, in which what is being tried then may end
 FURTHER = 4  # wheels of which is planned what they would bring
 PROCESS_BYTES, SAMPLE_BYTES = 4e8, 3_000.0  # of a process, and for each sample
 
@@ -56,7 +58,6 @@ class Found(NamedTuple):
     """What a search found."""
 
     best: Tried  # with the start of its full plan
-    rounds: list[dict[str, Any]]  # of that plan
     rows: list[dict[str, Any]]  # as ``Tried.row``, of all that was tried
     geometry: list[dict[str, Any]]  # wheel, along, direction, belt_angle_deg, reachable, upright
     wheels: list[
@@ -79,17 +80,25 @@ def alone(function: Callable[..., Any], *arguments: Any) -> Any:
     return function(*arguments)
 
 
-def full(
-    data: Json, tried: Tried, settings: Json, zones: Zones | None
-) -> tuple[Tried, list[dict[str, Any]]]:
-    """(passes that were tried with the feeds and forces of their full plan, its rounds)."""
+def ruled(data: Json, until: float, *arguments: Any) -> tuple[Tried, list[dict[str, Any]]]:
+    """As ``by_rules.climb``, whose ``moves``, ``told``, ``context`` and ``before`` may follow; nothing new is tried after ``until``
+    of the monotonic clock."""
+    return by_rules.climb(data, *arguments, over=passed(until))
+
+
+def full(data: Json, until: float, tried: Tried, settings: Json, zones: Zones | None) -> Tried:
+    """Passes that were tried with the feeds and forces of a full plan in the coarse resolution. No round begins after ``until`` of the
+    monotonic clock."""
     data = by_rules.with_machine(data, tried.machine, tried.wanted, settings)
     laid = by_rules.lay(data, tried.wanted, settings, core.RunContext(), zones)
     settings = {**settings, "goal": "tolerance", "levels": 0, "check": False}
-    plan = rounds.plan(by_rules.with_path(data, laid), settings, start=tried.start)
+    job = resolution.applied(
+        resolution.with_mode(by_rules.with_path(data, laid), resolution.COARSE), []
+    )
+    plan = rounds.plan(job, settings, start=tried.start, over=passed(until))
     share = max(by_rules.share(one) for one in plan.rounds)
     planned = tried._replace(change="full", in_tolerance=share, start=(plan.new, plan.factors))
-    return planned._replace(shares=plan.why["shares"]), plan.rounds
+    return planned._replace(shares=plan.why["shares"])
 
 
 def find(
@@ -148,11 +157,10 @@ class _Run:
         default, coarse = self._coarse(start, candidates(own, others, start, self.search.fixed))
         mine = [one for one in coarse if one.machine["wheel"] == own.machine["wheel"]]
         wheels = self._brought(further, own, mine)
-        best, its_rounds = self._finals(default, self._ruled(default, coarse))
+        best = self._finals(default, self._ruled(default, coarse))
         fits = [one.map.fits for one in (own, *others, *further)]
         return Found(
             best=best,
-            rounds=its_rounds,
             rows=self.rows,
             geometry=[_geometry(one, reach) for one in (own, *others) for reach in one.map.found],
             wheels=wheels,
@@ -168,9 +176,13 @@ class _Run:
     def _call(self, function: Callable[..., Any], *arguments: Any) -> Call:
         return Call(alone, (function, self.data, *arguments))
 
+    def _until(self, share: float) -> float:
+        """Of the monotonic clock, which processes have in common: when that share of the budget is spent."""
+        return self.begun + share * self.search.budget_s
+
     def _over(self, share: float) -> bool:
         """Whether that share of the budget is spent, or who asked wants no more."""
-        spent = time.monotonic() - self.begun > share * self.search.budget_s
+        spent = time.monotonic() > self._until(share)
         return spent or (self.stop is not None and self.stop())
 
     def _run(
@@ -246,14 +258,15 @@ class _Run:
 
     def _coarse(self, start: Move, queue: Sequence[Move]) -> tuple[Tried | None, list[Tried]]:
         """(what the rules find from the start, coarse plans of candidates, the best first)."""
-        calls = [self._call(by_rules.climb, start, self.settings, QUICK, self.zones)]
+        until = self._until(COARSE_UNTIL)
+        calls = [self._call(ruled, until, start, self.settings, self.zones)]
         default: Tried | None = None
         found: list[Tried] = []
         needed = 1
         while True:
             some, queue = queue[:FIRST], queue[FIRST:]
             for move in some:
-                calls.append(self._call(by_rules.attempt, move, self.settings, COARSE, self.zones))
+                calls.append(self._call(by_rules.gentled, move, self.settings, self.zones))
             best = self._best()
             values = self._run(calls, COARSE_UNTIL, (0.1, 0.4), needed)
             if needed:
@@ -277,7 +290,7 @@ class _Run:
         calls, owner = [], []
         for number, one in enumerate(ahead):
             for move in of_further(one, start, self.search.fixed, mine[0]):
-                calls.append(self._call(by_rules.attempt, move, self.settings, COARSE, self.zones))
+                calls.append(self._call(by_rules.gentled, move, self.settings, self.zones))
                 owner.append(number)
         values = self._run(calls, RULES_UNTIL, (0.4, 0.5))
         shares: dict[int, float] = {}
@@ -295,25 +308,13 @@ class _Run:
         calls = []
         for one in leaders:
             begun: Move = (one.change, one.machine, one.wanted)
-            options = (
-                begun,
-                self.settings,
-                COARSE,
-                self.zones,
-                by_rules.TRIES,
-                moves,
-                None,
-                None,
-                one,
-            )
-            calls.append(self._call(by_rules.climb, *options))
-        values = self._run(calls, RULES_UNTIL, (0.5, 0.7))
+            options = (begun, self.settings, self.zones, moves, None, None, one)
+            calls.append(self._call(ruled, self._until(RULES_UNTIL), *options))
+        values = self._run(calls, RULES_UNTIL + TO_END, (0.5, 0.7))
         climbed = [value[0] for value in values if value is not None]
         return sorted([*climbed, *coarse], key=lambda one: -one.in_tolerance)
 
-    def _finals(
-        self, default: Tried | None, tried: list[Tried]
-    ) -> tuple[Tried, list[dict[str, Any]]]:
+    def _finals(self, default: Tried | None, tried: list[Tried]) -> Tried:
         """The best of full plans of the best, what the rules found from the start among them unless it is far behind."""
         chosen: list[Tried] = []
         for one in tried:
@@ -322,21 +323,19 @@ class _Run:
         if default is not None and not any(_same(default, one) for one in chosen):
             if not chosen or default.in_tolerance > chosen[0].in_tolerance - FAR_BEHIND:
                 chosen = sorted([*chosen[: FINALS - 1], default], key=lambda one: -one.in_tolerance)
-        calls = [self._call(full, one, self.settings, self.zones) for one in chosen]
+        until = self._until(FULL_UNTIL)
+        calls = [self._call(full, until, one, self.settings, self.zones) for one in chosen]
         own = [k for k, one in enumerate(chosen) if default is not None and _same(one, default)]
         needed = 1 + max(own, default=0)
         values = [one for one in self._run(calls, 1.0, (0.7, 1.0), needed) if one is not None]
-        best: tuple[Tried, list[dict[str, Any]]] = max(values, key=lambda one: one[0].in_tolerance)
-        return best
+        return max(values, key=lambda one: one.in_tolerance)
 
 
 def _rows(value: Any) -> list[dict[str, Any]]:
     """What is told of a call's value."""
     if isinstance(value, Tried):
         return [value.row(False)]
-    if isinstance(value, tuple) and value and isinstance(value[0], Tried):
-        return [value[0].row(False)] if value[0].change == "full" else list(value[1])
-    return []
+    return list(value[1]) if isinstance(value, tuple) and isinstance(value[0], Tried) else []
 
 
 def _same(one: Tried, other: Tried) -> bool:

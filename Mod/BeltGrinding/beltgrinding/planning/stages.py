@@ -26,7 +26,7 @@ from ..raster import raster_path, reach_map, region
 from ..simulation.result import Result
 from . import by_rules, rounds, search as searches, wheels
 from .belts import Belt, mounted
-from .by_rules import Fidelity, Zones
+from .by_rules import Zones
 from .candidates import Seen, one_a_way, ranked
 from .grinding import Ground, grind as grind_one, with_forces
 from .search import GAIN, alone
@@ -37,7 +37,6 @@ BEAM = 2  # sequences that get another stage, and as many that leave an allowanc
 LEAVES = (0.15, 0.3)  # of the mean stock: what a stage leaves to a finer belt
 MOST = 4  # stages
 CHOOSING = 0.4  # of the budget
-FIDELITY = Fidelity(3, 6_000, False)  # one round says too little of a belt that removes little
 
 Told = Callable[[dict[str, Any]], object]
 
@@ -185,7 +184,7 @@ def planned(
     data, settings = rounds.in_time(job, with_forces(typed(job), settings))
     laid = wanted if step.everywhere or left is None else with_region(job, wanted)
     move = ("stage", records.plain(typed(data).belt_machine), laid)
-    tried, plan = by_rules.attempted(data, move, settings, FIDELITY, zones)
+    tried, plan = by_rules.attempted(data, move, settings, zones)
     plan.after.field.write_hdf5(state)
     share, open_zones = judged(plan.after, tool.job)
     kept = {k: v for k, v in tried.wanted.items() if k not in ("region_points", "region_mm")}

@@ -138,6 +138,10 @@ def test_a_plan_that_comes_during_a_drag_ends_it():
     chart.deleteLater()
 
 
+def shown(name):
+    return bool(visible(QtGui.QWidget, name))
+
+
 @pytest.mark.slow
 def test_faces_are_ground_from_nothing_by_one_button():
     whole_screen()
@@ -157,7 +161,14 @@ def test_faces_are_ground_from_nothing_by_one_button():
     before = [list(path.Feeds), list(path.Poses)]
     settle()
     assert field("plan").isEnabled() and not plan.Fingerprint, "nothing begins by itself"
+    assert plan.SearchSeconds == 120 and not shown("enough")
+    field("LayPasses").setChecked(False)
+    assert not shown("SearchSeconds")
+    field("LayPasses").setChecked(True)
+    assert shown("SearchSeconds")
     press("Plan")
+    press("Take the best so far")
+    assert not field("enough").isEnabled()
     wait(lambda: plan.Fingerprint, 400)
     settle()
     assert [list(path.Feeds), list(path.Poses)] == before, "nothing is changed before it is applied"
@@ -166,6 +177,8 @@ def test_faces_are_ground_from_nothing_by_one_button():
     table = field("rounds")
     names = [table.item(row, 0).text() for row in range(table.rowCount())]
     assert names[0].endswith(" mm") and "now" in names, names
+    assert "belt at 0 degrees" in table.item(0, 0).toolTip() and not shown("enough")
+    assert "The wheel gets to" in field("reasons").text()
     panel = [area for area in visible(QtGui.QScrollArea) if area.isAncestorOf(field("feedChart"))][
         0
     ]

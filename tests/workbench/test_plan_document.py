@@ -253,6 +253,19 @@ def test_passes_are_laid_and_planned_and_applied_together():
     doc.recompute()
     assert path.Planned and plan.Applied
 
+    # Searched for, too.
+    plan.SearchSeconds = 10
+    doc.recompute()
+    assert plan.OutOfDate and not plan.Applied
+    plan = beltgrinding.make_plan(job, LayPasses=True, SearchSeconds=10, Rounds=2, Check=False)
+    found = json.loads(plan.Data)["search"]
+    assert 0.0 < found["reachable"] <= found["reachable_by_any"] <= 1.0 and found["wheels"]
+    assert plan.InTolerance >= told - 1.0 and found["seconds"] < 60.0
+    searched = plan.InTolerance
+    beltgrinding.apply_plan(plan)
+    beltgrinding.simulate(job)
+    assert near(beltgrinding.make_deviation(job).InTolerance, searched, 1e-6)
+
     # With a program of another kind there are no passes to lay.
     beltgrinding.import_program(job, "pass.csv")
     try:

@@ -17,7 +17,8 @@ from ..base.kinds import Array, Context, Facts, Json
 from ..engine import InputError, core
 from ..cell.tool_path import tool_path
 from ..job import robot_time
-from ..planning import from_file, grinding, pictures, rounds as plans, written
+from ..planning import from_file, grinding, pictures, rounds as plans, wheels, written
+from ..planning.search import Search
 from ..programs.force_device import ForceDevice
 from ..programs.writers.writer import zones_written
 from . import job_inputs, result_files, stored_facts
@@ -112,6 +113,9 @@ class Plan(Proxy):
                 "the passes are laid anew, too: step-over, run-out, how often they are run through"
             )
             obj.addProperty("App::PropertyBool", "LayPasses", "Passes", text)
+        if "SearchSeconds" not in obj.PropertiesList:
+            text = "so long it searches for direction and belt angle of passes that are laid anew, on all cores; 0: by rules alone"
+            obj.addProperty("App::PropertyInteger", "SearchSeconds", "Passes", text)
         add_outputs(obj, OUTPUTS)
         for name, text in PICTURES:
             if name not in obj.PropertiesList:
@@ -156,6 +160,8 @@ def fingerprint(obj: DocumentObject, job: DocumentObject) -> str:
     else:
         del settings["timing"]  # as before there was a choice
     data = [job_inputs.fingerprint(job), inspection(job), settings, obj.LayPasses]
+    if obj.LayPasses and obj.SearchSeconds:
+        data.append(obj.SearchSeconds)
     return hashlib.sha256(json.dumps(data, sort_keys=True, allow_nan=False).encode()).hexdigest()
 
 
@@ -204,6 +210,7 @@ class Work:
         self.sources = sources(job)
         self.read = [entry(path) for path in paths_of(job)]
         self.raster = settings_of(passes_of(job)) if obj.LayPasses else None
+        self.search_s = max(obj.SearchSeconds, 0) if obj.LayPasses else 0
         self.planned = fingerprint(obj, job)
 
     def find(
@@ -212,8 +219,9 @@ class Work:
         context: Context = None,
         told: Callable[[dict[str, Any]], object] | None = None,
         words: Mapping[str, str] | None = None,
+        stop: Callable[[], bool] | None = None,
     ) -> Found:
-        """A ``Found`` for a job's data. Raises InputError, Cancelled."""
+        """A ``Found`` for a job's data. ``stop()``: whether the best passes so far are enough. Raises InputError, Cancelled."""
         context = context or core.RunContext()
         searched, whole = {**self.settings, "check": False}, self.settings["check"]
         first = context.part(0.0, PLANNING if whole else 1.0)
@@ -223,7 +231,11 @@ class Work:
         else:
             # Zones as the path's export will have them: KRL's, in the form of the job's controller.
             zones = functools.partial(zones_written, name=EXPORTED, form=robot_time.form(data))
-            ground = grinding.grind(data, self.raster, searched, first, told, zones)
+            search = None
+            if self.search_s:
+                further = [*wheels.series(wheels.own(data)), *wheels.of_presets()]
+                search = Search(self.search_s, further=wheels.mounted(data, further))
+            ground = grinding.grind(data, self.raster, searched, first, told, zones, search, stop)
             plan = ground.plan
         checked: from_file.Checked | None = None
         refused: Facts = []
@@ -289,7 +301,10 @@ def store(obj: DocumentObject, job: DocumentObject, found: Found) -> None:
     obj.InToleranceBefore = 100.0 * before["in_tolerance"]
     obj.InTolerance = 100.0 * after["in_tolerance"]
     obj.ProcessTimeBefore, obj.ProcessTime = before["process_time_s"], after["process_time_s"]
-    tried = {} if found.ground is None else {"tried": found.ground.tried}
+    tried: dict[str, Any] = {} if found.ground is None else {"tried": found.ground.tried}
+    if found.ground is not None and found.ground.search is not None:
+        kept = ("reachable", "reachable_by_any", "wheels", "seconds", "through")
+        tried["search"] = {name: found.ground.search[name] for name in kept}
     checked = found.checked
     files = {} if checked is None else {"from_file": checked.entry}
     stored_facts.store(obj, "FilesShort", [*checked.short, *checked.notes] if checked else [])

@@ -37,12 +37,19 @@ class PlanRunner(Runner):
     def __init__(self, obj: DocumentObject, progress: Told, done: Done) -> None:
         self.plan, self.words = obj.Name, words()
         self.rounds: list[dict[str, Any]] = []  # as ``planning`` tells them
+        self.enough = False  # whether the search is to end with the best so far
         job = obj.getParentGroup()
         self.task = planned.Work(obj, job)
         super().__init__(job, progress, done)
 
     def work(self, context: Context) -> planned.Found:
-        return self.task.find(self.data, context, self.rounds.append, self.words)
+        stop = lambda: self.enough
+        return self.task.find(self.data, context, self.rounds.append, self.words, stop)
+
+    @property
+    def searching(self) -> bool:
+        """Whether it looks for other passes still."""
+        return bool(self.task.search_s) and not (self.rounds and "change" not in self.rounds[-1])
 
     def _store(self, found: planned.Found) -> planned.Found:
         step = translate("BeltGrinding", "Plan")

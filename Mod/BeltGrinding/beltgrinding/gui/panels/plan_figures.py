@@ -18,6 +18,7 @@ from ..common.report_language import language
 from ..widgets.picture_label import PictureLabel
 
 LARGE = 0.9  # of the screen
+LEAST_GAIN, MOST_WHEELS = 0.01, 3  # of the area; wheels that are told
 
 
 class PlanFigures(QtGui.QWidget):
@@ -128,6 +129,7 @@ class PlanFigures(QtGui.QWidget):
             for state, word in sorted(reasons.WORDS.items(), key=lambda one: -shares[one[1]])
             if shares[word] > pictures.SMALLEST
         ]
+        told += _further(data.get("search"))
         self.reasons.setText("<br>".join(told))
         for widget in (self.why, self.reasons):
             widget.setVisible(bool(told))
@@ -163,10 +165,7 @@ def _round(number: int, one: Json) -> tuple[str, str, str, str]:
     """The texts of a row: a round of a plan, or passes that were tried."""
     share = f"{figure(100.0 * one['in_tolerance'], '.1f')} %"
     if "change" in one:
-        name = f"{figure(one['step_over_mm'], '.3g')} mm"
-        if one["repeats"] > 1:
-            name += f" × {one['repeats']}"
-        return name, share, "", ""
+        return _tried(one), share, "", ""
     name = str(number) if number else translate("BeltGrinding", "now")
     if "from_file" in one:
         name = translate("BeltGrinding", "file")
@@ -177,6 +176,29 @@ def _round(number: int, one: Json) -> tuple[str, str, str, str]:
     unit = preferences.deviation_unit()
     rms = figure(one["rms_mm"] / unit.size, f".{unit.decimals}f")
     return name, share, rms, figure(one["process_time_s"], ".1f")
+
+
+def _tried(one: Json) -> str:
+    """What passes that were tried are called."""
+    name = f"{figure(one['step_over_mm'], '.3g')} mm"
+    if one["repeats"] > 1:
+        name += f" × {one['repeats']}"
+    return name
+
+
+def _further(search: Json | None) -> list[str]:
+    """What the wheel gets to, and what others would bring, after a search."""
+    if search is None:
+        return []
+    text = translate("BeltGrinding", "The wheel gets to {} % of the area, some wheel to {} %.")
+    shares = (figure(100.0 * search[key], ".1f") for key in ("reachable", "reachable_by_any"))
+    told = [text.format(*shares)]
+    gains = [one for one in search["wheels"] if (one["gain"] or 0.0) >= LEAST_GAIN]
+    for one in sorted(gains, key=lambda one: -one["gain"])[:MOST_WHEELS]:
+        text = translate("BeltGrinding", "A wheel of {} mm radius, {} mm wide: {} points more.")
+        sizes = (figure(one["wheel"][key], "g") for key in ("radius_mm", "width_mm"))
+        told.append(text.format(*sizes, figure(100.0 * one["gain"], ".1f")))
+    return told
 
 
 def _checked(obj: DocumentObject, files: bool) -> list[str]:
@@ -197,7 +219,12 @@ def _passes(one: Json) -> str:
     text = translate(
         "BeltGrinding", "Passes {:.3g} mm apart, run-out {:.3g} mm, run through {} times, {} poses"
     )
-    return text.format(one["step_over_mm"], one["run_out_mm"], one["repeats"], one["poses"])
+    told = text.format(one["step_over_mm"], one["run_out_mm"], one["repeats"], one["poses"])
+    way = ", ".join(figure(part, ".3g") for part in one["direction"])
+    way = f"({way})" if one["along"] == "direction" else one["along"]
+    text = translate("BeltGrinding", "along {}, belt at {} degrees, {} N")
+    numbers = (figure(one[key], ".3g") for key in ("belt_angle_deg", "force_N"))
+    return f"{told}\n{text.format(way, *numbers)}"
 
 
 def _table(name: str, *columns: str, stretched: int = 0) -> Table:

@@ -34,6 +34,9 @@ if TYPE_CHECKING:
     from ..common.runner import Runner
 
 
+MOST_SECONDS = 86_400  # of a search
+
+
 class PlanPanel(RunPanel):
     """Settings go into the Plan object as they are typed; what was found is shown, and goes into the paths by
     Apply."""
@@ -52,6 +55,10 @@ class PlanPanel(RunPanel):
         row = QtGui.QHBoxLayout()
         self.begin = self._button("plan", translate("BeltGrinding", "Plan"), self.start)
         row.addWidget(self.begin)
+        self.enough = self._button(
+            "enough", translate("BeltGrinding", "Take the best so far"), self._take_best
+        )
+        row.addWidget(self.enough)
         row.addWidget(self.cancel)
         body.addLayout(row)
         body.addWidget(self.bar)
@@ -98,6 +105,10 @@ class PlanPanel(RunPanel):
             box.add("ForceMax", translate("BeltGrinding", "Greatest force"))
         if self._has_passes():
             box.add("LayPasses", translate("BeltGrinding", "Lay the passes anew"))
+            seconds = box.add("SearchSeconds", translate("BeltGrinding", "Search, at most"))
+            seconds.setMaximum(MOST_SECONDS)
+            seconds.setSuffix(" s")
+            seconds.setSpecialValueText(translate("BeltGrinding", "by rules alone"))
         levels = box.add("Levels", translate("BeltGrinding", "Different feeds"))
         levels.setMaximum(10_000)
         levels.setSpecialValueText(translate("BeltGrinding", "any number"))
@@ -124,6 +135,8 @@ class PlanPanel(RunPanel):
             rows.discard("WantedShare")
         if not self.obj.Probability:
             rows.discard("PlacementDeviation")
+        if not self.obj.LayPasses:
+            rows.discard("SearchSeconds")
         self.limits.show_rows(rows)
 
     def _changes(self) -> Fold:
@@ -207,7 +220,13 @@ class PlanPanel(RunPanel):
 
     def progress(self, share: float) -> None:
         super().progress(share)
-        self.figures.show_rounds(known(self.runner).rounds)
+        runner = known(self.runner)
+        self.figures.show_rounds(runner.rounds)
+        self.enough.setVisible(runner.searching)
+
+    def _take_best(self) -> None:
+        known(self.runner).enough = True
+        self.enough.setEnabled(False)
 
     def done(self, found: Any, error: BaseException | None) -> None:
         super().done(found, error)
@@ -328,6 +347,8 @@ class PlanPanel(RunPanel):
     def _arrange(self, running: bool) -> None:
         super()._arrange(running)
         self.begin.setVisible(not running)
+        self.enough.setVisible(running and self.runner is not None and self.runner.searching)
+        self.enough.setEnabled(True)
         for widget in (self.limits, self.changes, self.rounds):
             widget.setEnabled(not running)
         there = bool(self.obj.Fingerprint)

@@ -65,6 +65,7 @@ def _verdict(arguments):
 
 
 def _section(arguments):
+    from ..base import standard
     from ..engine import InputError
     from ..inspection import section
     from ..simulation.result import Result
@@ -72,7 +73,7 @@ def _section(arguments):
     by_plane = (arguments.point, arguments.normal)
     by_line = (arguments.start, arguments.end)
     for path in arguments.output:
-        if Path(path).suffix.lower() not in (".csv", ".svg"):
+        if not standard.named(path) and Path(path).suffix.lower() not in (".csv", ".svg"):
             raise InputError(
                 "cli.section_suffix", "{file}: a section is written as .csv or .svg", file=path
             )

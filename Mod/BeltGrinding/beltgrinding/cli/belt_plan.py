@@ -10,7 +10,7 @@ def add(commands):
     """Adds the command to the parser's ``commands``."""
     belt = commands.add_parser(
         "belt-plan",
-        help="when to change the belt over a batch of parts, and how feed or force follow its wear",
+        help="find when to change the belt over a batch, and how feed or force follow its wear (docs/belt-plan.md)",
         description="The job is simulated with a fresh belt. Each further part of the batch is ground slower, or pressed "
         "harder, so that it loses as much; the cheapest moments to change the belt follow from the costs.",
     )

@@ -19,7 +19,7 @@ def add(commands):
     mesh.set_defaults(do=_mesh)
     scan = commands.add_parser(
         "scan",
-        help="align a scan of the really ground part and compare it with the prediction",
+        help="align a scan of the ground part and compare it with the prediction (docs/scan.md)",
         description="Keeps the measured heights with the result. Where the scan starts: as it lies, "
         "by --matrix, by --pairs, or by --principal.",
     )

@@ -12,7 +12,7 @@ def add(commands):
     """Adds the command to the parser's ``commands``."""
     sort = commands.add_parser(
         "sort",
-        help="castings by their scans: passes, passes with a plan of its own, scrap (docs/castings.md)",
+        help="sort castings by their scans: passes, passes with a plan of its own, scrap (docs/castings.md)",
         description="Grinds each raw part as its scan shows it, by the job's program; plans feeds for those that do not "
         "pass; tells why the others cannot be saved.",
     )

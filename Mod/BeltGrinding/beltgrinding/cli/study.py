@@ -16,7 +16,7 @@ def add(commands):
     """Adds the command to the parser's ``commands``."""
     study = commands.add_parser(
         "study",
-        help="a job many times, with what varies (docs/study.md)",
+        help="run a job many times with other values (docs/study.md)",
         description="Makes the runs of a study that are not in its folder yet, and writes the table. What is finished stays, "
         "whatever happens; the same command goes on.",
     )

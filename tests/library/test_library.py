@@ -68,8 +68,11 @@ endforeach()
 
 
 def test_the_page_opens_with_the_smallest_example():
+    """And the README has it, with what it prints."""
     block = "".join(f"    {line}\n" if line else "\n" for line in PRESS.read_text().splitlines())
     assert PAGE.split("\n", 2)[2].startswith(block)
+    readme = (ROOT / "README.md").read_text("utf-8")
+    assert block in readme and re.search(r"    (\d+ mm2, .*)\n", PAGE)[0] in readme
 
 
 def test_the_example_by_find_package(prefix, tmp_path):

@@ -2,8 +2,7 @@
 
 from pathlib import Path
 
-from . import background, outputs
-from .messages import print_text
+from . import background, figures, outputs
 
 
 def add(commands):
@@ -37,6 +36,7 @@ def add(commands):
     )
     belt.add_argument("-q", "--quiet", action="store_true", help="no progress, no summary")
     outputs.add(belt)
+    figures.add(belt)
     belt.set_defaults(do=_belt_plan)
 
 
@@ -65,8 +65,8 @@ def _belt_plan(arguments):
     found = background.run(work, arguments.quiet)
     data = belt_plan.summary(found, costs)
     belt_plan.write(found, costs, out)
-    if not arguments.quiet:
-        print_text(_text(data))
+    if arguments.json or not arguments.quiet:
+        figures.tell(arguments, data, _text(data))
 
 
 def _text(data):

@@ -24,9 +24,9 @@ int main() {
                                             options.process.wheel, options.process.force);
     const auto law = make_removal_law("local", {.coefficient = 1e-4});  // mm2/N
 
-    const Eigen::DiagonalMatrix<double, 3> down(1.0, -1.0, -1.0);  // z into the work, y the axle
-    const Frame begin = Eigen::Translation3d(-40.0, 0.0, 1.0) * Frame(down);
-    const Frame end = Eigen::Translation3d(40.0, 0.0, 1.0) * Frame(down);
+    const Vec3 into(0, 0, -1), along(1, 0, 0);
+    const Frame begin = contact_frame({-40, 0, 1}, into, along);
+    const Frame end = contact_frame({40, 0, 1}, into, along);
     const ToolPath path({{.base_from_tcp = begin}, {.base_from_tcp = end, .feed = 50.0}}, {});
     const SimulationResult result = simulate(plate, path, *contact, *law, options);
     std::printf("depth %.4f mm, volume %.2f mm3\n", 1.0 - plate.height[40 * 201 + 100],

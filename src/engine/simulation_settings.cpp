@@ -98,7 +98,7 @@ void HeatRequest::validate(std::size_t samples) const {
         throw InputError("heat.range", "the range of the heat must hold what is most likely");
     }
     if (!std::isfinite(start) || !is_limit(burn)) {
-        throw InputError("heat.temperatures", "a temperature of the heat is none");
+        throw InputError("heat.temperatures", "heat: each temperature must be a number of degrees");
     }
 }
 
@@ -108,8 +108,8 @@ void FinishRequest::validate() const {
         !(std::isnan(before) || (is_limit(before) && before <= kRoughest)) ||
         !(rest >= 0.0 && rest < 1.0)) {
         throw InputError("finish.roughness",
-                         "a roughness of the finish is none, or the share of it that a pass leaves "
-                         "is not from 0 to below 1");
+                         "finish: each roughness must be positive, and the share of it that a pass "
+                         "leaves from 0 to below 1");
     }
     for (const double exponent : {pressure_exponent, speed_exponent, feed_exponent, cut_exponent}) {
         if (!std::isfinite(exponent))

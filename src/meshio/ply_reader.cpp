@@ -316,8 +316,8 @@ RawMesh parse(std::string_view data) {
             read_records(body, element, [&](const Property& p, std::size_t) { skip(body, p); });
         } else {
             throw InputError("ply.element",
-                             "its element '{element}' names vertices, and is none that is known "
-                             "(face, tristrips); export it as triangles",
+                             "its element '{element}' names vertices, but only face and "
+                             "tristrips are read; export it as triangles",
                              {{"element", shown(name)}});
         }
     }

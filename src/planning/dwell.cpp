@@ -317,7 +317,8 @@ void DwellSettings::validate() const {
     const bool good = inner_share >= 0.0 && inner_share <= 1.0 && inner_cost > 0.0 &&
                       inner_cost <= 1.0 && smoothing >= 0.0 && std::isfinite(smoothing) &&
                       reweightings >= 0 && accuracy > 0.0 && iterations > 0;
-    if (!good) throw InputError("planning.settings", "plan: a setting of the solver is none");
+    if (!good)
+        throw InputError("planning.settings", "plan: a setting of the solver is out of its range");
 }
 
 DwellSolution plan_dwell(const DwellProblem& problem, const DwellSettings& settings,

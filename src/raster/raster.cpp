@@ -321,7 +321,7 @@ RasterLines raster_lines(const RasterSurface& surface, const RasterOptions& opti
         for (const std::uint32_t v : t)
             if (v >= surface.point.size())
                 throw InputError("raster.triangle_without_point",
-                                 "a triangle names a point that is none");
+                                 "a triangle names a point that does not exist");
     return Raster(surface, options, context).run();
 }
 

@@ -10,6 +10,7 @@ from beltgrinding.gui.scene import belt_shapes
 from support import pictures
 from support.hands import (
     field,
+    fit_view,
     menu,
     picture,
     prepare,
@@ -142,6 +143,7 @@ def test_a_preset_makes_it_a_free_belt_that_is_drawn_in_the_cell():
     whole_screen()
     job = prepare()
     doc, machine = job.Document, job.Document.BeltMachine
+    fit_view()
     menu("Belt machine")
     choose_in("machinePreset", "Free belt 40 mm, tube belt grinder")
     assert machine.Kind == "free_belt" and machine.RunWidth.Value == 40 and machine.RunTension == 2

@@ -14,6 +14,7 @@ from support import synthetic_finish as made_up
 from support.hands import (
     choose,
     field,
+    fit_view,
     menu,
     name_file,
     picture,
@@ -270,6 +271,7 @@ def test_a_table_is_fitted_looked_at_saved_and_taken():
     here = started()
     doc, edit, finish, job, steps = here.doc, here.edit, here.finish, here.job, here.steps
     with_fit()
+    fit_view()
     edit()
     assert not field("fitFinish").isEnabled()
     choose_in("finishChoice", 1)

@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import FreeCAD
-import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
 import beltgrinding
 from support.hands import (
     field,
+    fit_view,
     menu,
     name_file,
     picture,
@@ -148,9 +148,7 @@ def test_from_what_varies_to_a_row_as_the_documents_state():
     area.setMaximumHeight(16777215)
     settle()
     press("Close")
-    Gui.activeDocument().activeView().viewIsometric()
-    Gui.SendMsgToActiveView("ViewFit")
-    settle()
+    fit_view()
     picture("workbench-study-table")
 
     # A double click sets the document to the run, as one step.
@@ -323,6 +321,7 @@ def test_the_panel_as_it_looks():
     press("Close")
     assert json.loads(study.Vary) == varied, "what was not changed is as it was"
     assert (study.Correlations, study.Asked) == kept
+    fit_view()
     menu("Study...")
     assert field("Runs", QtGui.QSpinBox).value() == 200
     picture("workbench-study")

@@ -12,6 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from support import prose, texts
+
 ROOT = Path(__file__).resolve().parents[2]
 CODE = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*(\.[a-z][a-z0-9]*(_[a-z0-9]+)*)+")
 LITERAL = r'"(?:[^"\\\n]|\\.)*"'
@@ -168,6 +170,13 @@ def test_every_form_is_translated(found, file):
 def test_every_error_has_a_code(found):
     assert not found.plain[".cpp"], "an error needs a code: beltgrinding/error.h"
     assert not found.plain[".py"], "an error needs a code: InputError's docstring"
+
+
+def test_messages_and_labels_have_none_of_our_idioms(found):
+    forms = [(code, form) for code, several in found.forms.items() for form in several]
+    labels = [(place, text) for (_, text), place in texts.marked(ROOT / "Mod/BeltGrinding").items()]
+    wrong = [f"{where}: {text}" for where, text in forms + labels if prose.IDIOMS.search(text)]
+    assert not wrong, "\n".join(wrong)
 
 
 @pytest.mark.parametrize(

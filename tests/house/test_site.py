@@ -6,6 +6,7 @@ import subprocess
 
 import pytest
 
+from support import browser
 from support.freecad import ROOT
 
 from check_site import check
@@ -74,14 +75,49 @@ def test_the_menu_names_every_page_of_the_manual():
     assert pages <= set(listed)
 
 
-def test_the_site_is_built():
+@pytest.fixture(scope="module")
+def site_built():
+    """The folder of the site, just built."""
     assert shutil.which("mkdocs"), "mkdocs is not installed"
     done = subprocess.run([ROOT / "tools" / "docs"], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    site = ROOT / "build" / "site"
-    assert done.stdout.strip() == str(site / "index.html")
+    assert done.stdout.strip() == str(ROOT / "build" / "site" / "index.html")
+    return ROOT / "build" / "site"
+
+
+def test_the_site_shows_every_picture(site_built):
     pictures = {path.name for path in (ROOT / "docs" / "images").glob("*.png")}
     shown = set()
-    for page in site.glob("*.html"):
+    for page in site_built.glob("*.html"):
         shown |= set(re.findall(r'src="images/([\w-]+\.png)"', page.read_text()))
     assert pictures - shown <= {"tap.png"}  # that one is the README's
+
+
+FREE = re.compile(
+    r"^(?!using|namespace|struct|class|enum|template)\w[\w:<>,&* ]*[ &*](\w+)\(", re.M
+)
+
+
+def test_the_library_s_functions_are_on_its_pages(site_built):
+    """Each class and each function outside of classes of every public header."""
+    headers = sorted((ROOT / "src").glob("*/include/beltgrinding/*.h"))
+    assert len(headers) > 20
+    for header in headers:
+        text = header.read_text("utf-8")
+        wanted = set(re.findall(r"^(?:struct|class) (\w+)(?: final)?(?: : .*)? \{", text, re.M))
+        wanted |= set(FREE.findall(text))
+        page = (site_built / "api" / f"{header.stem}.html").read_text("utf-8")
+        assert wanted and wanted <= set(re.findall(r'<h2 id="[\w-]+">([\w:]+)', page)), header.name
+
+
+@pytest.mark.skipif(browser.program() is None, reason="Chromium is not installed")
+def test_the_search_works_from_the_folder(site_built):
+    found = "[...document.querySelectorAll('.md-search-result__link')].map(a => a.href)"
+    with browser.Browser(webgl=False) as chromium:
+        page = chromium.open(f"{site_built}/languages/krl.html?q=contact_frame")
+        page.wait(f"{found}.length")
+        assert (
+            f"file://{site_built}/api/tool_path.html?h=contact_frame#contact_frame"
+            in page.value(found)
+        )
+        assert not page.faults

@@ -13,6 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 BUILD = Path(os.environ.get("BELTGRINDING_BUILD", ROOT / "build" / "release"))
 EXAMPLE = ROOT / "examples" / "plate.cpp"
 PRESS = ROOT / "examples" / "press.cpp"
+BELT = ROOT / "examples" / "belt.cpp"
 PART = ROOT / "examples" / "part.cpp"
 PAGE = (ROOT / "docs" / "library.md").read_text("utf-8")
 
@@ -60,7 +61,7 @@ def check_depth(printed):
 FIND = """cmake_minimum_required(VERSION 3.22)
 project(grind LANGUAGES CXX)
 find_package(BeltGrinding {version} REQUIRED COMPONENTS core)
-foreach(example plate press)
+foreach(example plate press belt)
   add_executable(${{example}} ${{example}}.cpp)
   target_link_libraries(${{example}} PRIVATE beltgrinding::core)
 endforeach()
@@ -68,18 +69,23 @@ endforeach()
 
 
 def test_the_page_opens_with_the_smallest_example():
+    """And the README has it, with what it prints."""
     block = "".join(f"    {line}\n" if line else "\n" for line in PRESS.read_text().splitlines())
     assert PAGE.split("\n", 2)[2].startswith(block)
+    readme = (ROOT / "README.md").read_text("utf-8")
+    assert block in readme and re.search(r"    (\d+ mm2, .*)\n", PAGE)[0] in readme
 
 
 def test_the_example_by_find_package(prefix, tmp_path):
-    folder = project(tmp_path / "user", FIND.format(version=""), EXAMPLE, PRESS)
+    folder = project(tmp_path / "user", FIND.format(version=""), EXAMPLE, PRESS, BELT)
     configure(folder, f"-DCMAKE_PREFIX_PATH={prefix}", "-DCMAKE_BUILD_TYPE=Release")
     run("cmake", "--build", folder / "build")
     printed = run(folder / "build" / "plate", cwd=tmp_path)
     check_depth(printed)
     assert f"    {printed}" in PAGE
-    assert f"    {run(folder / 'build' / 'press', cwd=tmp_path)}" in PAGE
+    for example in ("press", "belt"):
+        lines = run(folder / "build" / example, cwd=tmp_path).splitlines()
+        assert "".join(f"    {line}\n" for line in lines) in PAGE, example
 
 
 def test_the_example_by_pkg_config(prefix, tmp_path):
@@ -97,7 +103,7 @@ def test_a_moved_prefix_is_still_found(prefix, tmp_path):
         if path.suffix in (".cmake", ".pc"):
             assert str(prefix) not in path.read_text() and str(ROOT) not in path.read_text(), path
     configure(
-        project(tmp_path / "user", FIND.format(version=""), EXAMPLE, PRESS),
+        project(tmp_path / "user", FIND.format(version=""), EXAMPLE, PRESS, BELT),
         f"-DCMAKE_PREFIX_PATH={moved}",
     )
 
@@ -143,14 +149,14 @@ def test_a_static_library_finds_its_reader_in_any_prefix(prefix, tmp_path):
 
 @pytest.mark.parametrize("version, fits", [("0.0.1", False), ("99.0", False)])
 def test_another_version_is_refused(prefix, tmp_path, version, fits):
-    folder = project(tmp_path / "user", FIND.format(version=version), EXAMPLE, PRESS)
+    folder = project(tmp_path / "user", FIND.format(version=version), EXAMPLE, PRESS, BELT)
     with pytest.raises(AssertionError, match="compatible with requested version"):
         configure(folder, f"-DCMAKE_PREFIX_PATH={prefix}")
 
 
 def test_an_unknown_part_is_refused(prefix, tmp_path):
     text = FIND.format(version="").replace("COMPONENTS core", "COMPONENTS core polishing")
-    folder = project(tmp_path / "user", text, EXAMPLE, PRESS)
+    folder = project(tmp_path / "user", text, EXAMPLE, PRESS, BELT)
     with pytest.raises(AssertionError, match="polishing"):
         configure(folder, f"-DCMAKE_PREFIX_PATH={prefix}")
 

@@ -332,6 +332,13 @@ def whole_screen():
     settle()
 
 
+def fit_view():
+    """Shows the whole document, from an oblique direction."""
+    Gui.activeDocument().activeView().viewIsometric()
+    Gui.SendMsgToActiveView("ViewFit")
+    settle()
+
+
 def prepare():
     """A job that can be simulated: a block with stock, belt machine and one pass; returns the job. Made
     as a macro does it, which takes a tenth of the time, and the same as ``prepare_by_hand`` leaves it.

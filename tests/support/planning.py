@@ -1,11 +1,10 @@
 """What the tests of plans begin with; imported inside FreeCAD."""
 
 import FreeCAD
-import FreeCADGui as Gui
 import Part
 
 import beltgrinding
-from support.hands import settle, start
+from support.hands import fit_view, start
 
 
 def prepared():
@@ -25,7 +24,5 @@ def prepared():
         job, Along="direction", Direction=FreeCAD.Vector(1, 0, 0), Feed="90 mm/s"
     )
     doc.recompute()
-    Gui.activeDocument().activeView().viewIsometric()
-    Gui.SendMsgToActiveView("ViewFit")
-    settle()
+    fit_view()
     return doc, job, path

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import engine
+from . import standard
 
 Data = bytes | Callable[[int], object]  # what `write_to` takes
 
@@ -30,6 +31,9 @@ _begun: set[Path] = set()  # files and folders that are not to outlast this proc
 
 def write_whole(path: Path, data: bytes) -> None:
     """Writes bytes to ``path``, whole or not at all, and onto the disk. Raises OSError."""
+    if standard.named(path):
+        standard.write(data)
+        return
     path = Path(os.path.realpath(path))  # a link stays one
     if path.exists() and not path.is_file():
         if path.is_dir():

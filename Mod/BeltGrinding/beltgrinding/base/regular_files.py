@@ -6,12 +6,14 @@ A FIFO or a device in a file's place would be read for ever, or never.
 from __future__ import annotations
 
 import errno
+import io
 import os
 import stat
 from pathlib import Path
 from typing import BinaryIO
 
 from ..engine import InputError, core
+from . import standard
 from .files import cannot_be_read
 
 MEGABYTE = 1 << 20
@@ -32,6 +34,8 @@ def open_regular(path: Path | str, limit: int) -> BinaryIO:
     """A regular file, opened to be read as bytes. Raises InputError where there is none, or where it
     is larger than ``limit`` bytes.
     """
+    if standard.named(path):
+        return _standard_input(limit)
     try:
         # Opening a FIFO would wait for someone who writes into it.
         descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | _BINARY)
@@ -55,18 +59,32 @@ def open_regular(path: Path | str, limit: int) -> BinaryIO:
                 kind=_kind(state.st_mode),
             )
         if state.st_size > limit:
-            raise InputError(
-                "files.too_large",
-                "{file}: has {size} MB, and no more than {limit} MB are read; split it",
-                file=shown(path),
-                size=-(-state.st_size // MEGABYTE),
-                limit=limit // MEGABYTE,
-            )
+            raise _too_large(path, state.st_size, limit)
         file = os.fdopen(descriptor, "rb")
         return file
     finally:
         if file is None:
             os.close(descriptor)
+
+
+def _standard_input(limit: int) -> BinaryIO:
+    try:
+        data = standard.read()
+    except OSError as error:
+        raise cannot_be_read(standard.NAME, error) from None
+    if len(data) > limit:
+        raise _too_large(standard.NAME, len(data), limit)
+    return io.BytesIO(data)
+
+
+def _too_large(path: Path | str, size: int, limit: int) -> InputError:
+    return InputError(
+        "files.too_large",
+        "{file}: has {size} MB, and no more than {limit} MB are read; split it",
+        file=shown(path),
+        size=-(-size // MEGABYTE),
+        limit=limit // MEGABYTE,
+    )
 
 
 _BINARY = getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)

@@ -230,6 +230,6 @@ def _of_job(columns: Any, worn: bool) -> core.Fact:
         )
     return core.Fact(
         "calibration.wear_by_job",
-        "how far the belts were worn is told by the job's law of wear, from {columns}",
+        "the belts' wear follows from {columns} by the job's law of wear",
         columns=columns,
     )

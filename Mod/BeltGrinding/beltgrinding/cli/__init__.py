@@ -118,6 +118,9 @@ def _main(argv, messages):
         elif arguments.versions:
             print(json.dumps(core.versions(), allow_nan=False))
         else:
+            from ..base import standard
+
+            standard.allow()
             arguments.status = 0  # a command may set it
             arguments.do(arguments)
     except InputError as error:

@@ -2,15 +2,14 @@
 
 from pathlib import Path
 
-from . import background, outputs
-from .messages import print_text
+from . import background, figures, outputs
 
 
 def add(commands):
     """Adds the command to the parser's ``commands``."""
     belt = commands.add_parser(
         "belt-plan",
-        help="when to change the belt over a batch of parts, and how feed or force follow its wear",
+        help="find when to change the belt over a batch, and how feed or force follow its wear (docs/belt-plan.md)",
         description="The job is simulated with a fresh belt. Each further part of the batch is ground slower, or pressed "
         "harder, so that it loses as much; the cheapest moments to change the belt follow from the costs.",
     )
@@ -37,6 +36,7 @@ def add(commands):
     )
     belt.add_argument("-q", "--quiet", action="store_true", help="no progress, no summary")
     outputs.add(belt)
+    figures.add(belt)
     belt.set_defaults(do=_belt_plan)
 
 
@@ -65,8 +65,8 @@ def _belt_plan(arguments):
     found = background.run(work, arguments.quiet)
     data = belt_plan.summary(found, costs)
     belt_plan.write(found, costs, out)
-    if not arguments.quiet:
-        print_text(_text(data))
+    if arguments.json or not arguments.quiet:
+        figures.tell(arguments, data, _text(data))
 
 
 def _text(data):

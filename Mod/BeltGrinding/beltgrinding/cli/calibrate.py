@@ -1,10 +1,8 @@
 """Fitting the removal law to what was measured, and predicting by it."""
 
-import json
 from pathlib import Path
 
-from . import background, outputs
-from .messages import print_text
+from . import background, figures, outputs
 
 
 def add(commands):
@@ -20,6 +18,7 @@ def add(commands):
     fit.add_argument("--wear-unit", type=float, default=1.0, help="work in J of one unit of wear")
     fit.add_argument("--job", help="job (.json) on whose wheel the grinds were done")
     outputs.add(fit)
+    figures.add(fit)
     fit.set_defaults(do=_calibrate)
     finish = commands.add_parser(
         "calibrate-finish", help="fit the roughness that passes leave to measured ones"
@@ -32,6 +31,7 @@ def add(commands):
     finish.add_argument("--job", help="job (.json) whose law tells how belts wear")
     finish.add_argument("--source", default="", help="what was measured, and by whom")
     outputs.add(finish)
+    figures.add(finish)
     finish.set_defaults(do=_calibrate_finish)
     scan = commands.add_parser(
         "calibrate-scan", help="fit the law's coefficient to a scan of the ground part"
@@ -46,6 +46,7 @@ def add(commands):
     scan.add_argument("--unit-mm", type=float, default=1.0, help="of the mesh, mm (default 1)")
     scan.add_argument("--offset", action="store_true", help="the scan may lie too high everywhere")
     outputs.add(scan)
+    figures.add(scan)
     scan.set_defaults(do=_calibrate_scan)
     told = commands.add_parser("predict", help="predict further grinds by a calibrated law")
     told.add_argument("law", help="what calibrate wrote")
@@ -53,6 +54,7 @@ def add(commands):
     told.add_argument("-o", "--output", help="CSV of the predictions")
     told.add_argument("--wheel-diameter", type=float, help="as for calibrate, mm")
     outputs.add(told)
+    figures.add(told)
     told.set_defaults(do=_predict)
 
 
@@ -77,7 +79,7 @@ def _calibrate(arguments):
         calibration.write(report, arguments.report)
     calibration.write(result["law"], arguments.output)
     arguments.messages.print_warnings(report["warnings"])
-    print_text(calibration_report.text(report))
+    figures.tell(arguments, report, calibration_report.text(report))
 
 
 def _calibrate_finish(arguments):
@@ -94,18 +96,18 @@ def _calibrate_finish(arguments):
         calibration.write(report, arguments.report)
     calibration.write(result["model"], arguments.output)
     arguments.messages.print_warnings(report["warnings"])
-    print_text(finish.text(report))
+    figures.tell(arguments, report, finish.text(report))
 
 
 def _calibrate_scan(arguments):
     from ..calibration import calibrate as calibration, part_scan as calibration_scan
 
     outputs.check(arguments, [arguments.output], [arguments.scan], arguments.result)
-    law, figures = calibration_scan.from_files(
+    law, found = calibration_scan.from_files(
         arguments.result, arguments.scan, arguments.unit_mm, offset=arguments.offset
     )
     calibration.write(law, arguments.output)
-    print(json.dumps(figures, allow_nan=False))
+    figures.tell(arguments, found)
 
 
 def _predict(arguments):
@@ -122,4 +124,4 @@ def _predict(arguments):
     if arguments.output:
         calibration_law.write_predictions(found, arguments.output)
     arguments.messages.print_warnings(found["notes"])
-    print(json.dumps(found["figures"], allow_nan=False))
+    figures.tell(arguments, found["figures"])

@@ -27,6 +27,7 @@ def add(commands):
 def _faces(arguments):
     from pathlib import Path
 
+    from ..base import standard
     from ..base.files import cannot_be_written, write_whole
     from ..engine import InputError
     from ..inspection import faces
@@ -36,7 +37,7 @@ def _faces(arguments):
     if not 0.0 < arguments.unit < float("inf"):
         raise InputError("cli.unit", "--unit must be above 0, not {unit:g}", unit=arguments.unit)
     design = {"file": arguments.part, "unit_mm": arguments.unit}
-    if Path(arguments.part).suffix.lower() == ".json":
+    if standard.named(arguments.part) or Path(arguments.part).suffix.lower() == ".json":
         design = load_job(arguments.part)["design"]
     outputs.check(arguments, [arguments.picture], [arguments.part, design.get("file")])
 

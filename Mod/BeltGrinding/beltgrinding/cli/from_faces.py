@@ -25,7 +25,7 @@ def add(commands):
     """Adds the command to the parser's ``commands``."""
     grind = commands.add_parser(
         "grind",
-        help="lay passes on faces and plan feeds and forces that bring them into tolerance (docs/planning.md)",
+        help="lay passes on faces and plan feeds and forces that bring them into tolerance (docs/grind.md)",
         description="Lays passes on the faces, plans their feeds and forces, and tries other passes where that is not "
         "enough. A part's file alone gets a wheel and a force that suit its faces; a job.json has its own.",
     )

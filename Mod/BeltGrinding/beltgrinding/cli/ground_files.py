@@ -43,12 +43,13 @@ class Files:
 
 def job_of(arguments, context):
     """(validated job, first settings of its raster)."""
+    from ..base import standard
     from ..engine import InputError
     from ..job import load as jobs
     from ..raster import proposal, raster_path
 
     faces = _faces(arguments.faces)
-    if Path(arguments.part).suffix.lower() == ".json":
+    if standard.named(arguments.part) or Path(arguments.part).suffix.lower() == ".json":
         if arguments.stock is not None:
             raise InputError(
                 "cli.stock_of_job", "--stock is for a part's file; the job has its own"

@@ -3,8 +3,7 @@
 import json
 from pathlib import Path
 
-from . import background, outputs
-from .messages import print_text
+from . import background, figures, outputs
 
 
 def add(commands):
@@ -26,6 +25,7 @@ def add(commands):
     cut.add_argument("--mode", choices=("unrolled", "shape"), default="unrolled", help="of the SVG")
     cut.add_argument("--exaggeration", type=float, help="of the heights in the shape's SVG")
     outputs.add(cut)
+    figures.add(cut)
     cut.set_defaults(do=_section)
     judge = commands.add_parser(
         "verdict",
@@ -37,6 +37,7 @@ def add(commands):
     judge.add_argument("--job", help="job.json whose key inspection is taken in place of its own")
     judge.add_argument("-o", "--output", help="file for the verdict in place of verdict.json there")
     outputs.add(judge)
+    figures.add(judge)
     judge.set_defaults(do=_verdict)
 
 
@@ -61,10 +62,11 @@ def _verdict(arguments):
     else:
         result.tell_finish(given["inspection"])
         result.update(verdict=True)
-    print_text(verdict.text(result.verdict))
+    figures.tell(arguments, json.loads(result.verdict_bytes()), verdict.text(result.verdict))
 
 
 def _section(arguments):
+    from ..base import standard
     from ..engine import InputError
     from ..inspection import section
     from ..simulation.result import Result
@@ -72,7 +74,7 @@ def _section(arguments):
     by_plane = (arguments.point, arguments.normal)
     by_line = (arguments.start, arguments.end)
     for path in arguments.output:
-        if Path(path).suffix.lower() not in (".csv", ".svg"):
+        if not standard.named(path) and Path(path).suffix.lower() not in (".csv", ".svg"):
             raise InputError(
                 "cli.section_suffix", "{file}: a section is written as .csv or .svg", file=path
             )
@@ -90,4 +92,4 @@ def _section(arguments):
             section.write_svg(found, path, arguments.mode, arguments.exaggeration)
         else:
             section.write_csv(found, path)
-    print(json.dumps(section.summary(found), allow_nan=False))
+    figures.tell(arguments, section.summary(found))

@@ -1,7 +1,6 @@
 """Learning the law and the belt's wear from the scan of a ground part."""
 
-from . import background, outputs
-from .messages import print_text
+from . import background, figures, outputs
 
 NAMES = {"coefficient": "coefficient, mm2/N", "ln_wear_scale": "wear scale"}
 
@@ -36,6 +35,7 @@ def add(commands):
     )
     learn.add_argument("-q", "--quiet", action="store_true", help="no progress, no summary")
     outputs.add(learn)
+    figures.add(learn)
     learn.set_defaults(do=_learn)
 
 
@@ -59,19 +59,17 @@ def _learn(arguments):
         return learning.learn(result.job, measured, arguments.scatter, arguments.drift, context)
 
     found = background.run(work, arguments.quiet)
+    report = {
+        "learned": found.report,
+        "factor": found.factor,
+        "rms_mm": {"before": found.rms_mm[0], "after": found.rms_mm[1]},
+        "samples": found.samples,
+    }
     if arguments.report:
-        calibration.write(
-            {
-                "learned": found.report,
-                "factor": found.factor,
-                "rms_mm": {"before": found.rms_mm[0], "after": found.rms_mm[1]},
-                "samples": found.samples,
-            },
-            arguments.report,
-        )
+        calibration.write(report, arguments.report)
     calibration.write(found.law, arguments.output)
-    if not arguments.quiet:
-        print_text(_text(found))
+    if arguments.json or not arguments.quiet:
+        figures.tell(arguments, report, _text(found))
 
 
 def _text(found):

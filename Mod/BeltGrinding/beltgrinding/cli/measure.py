@@ -1,8 +1,7 @@
 """A result for other measuring programs, and what these measured: ``beltgrind mesh`` and ``scan``."""
 
-import json
 
-from . import background, outputs
+from . import background, figures, outputs
 
 
 def add(commands):
@@ -16,10 +15,11 @@ def add(commands):
         "--deflection-mm", type=float, default=0.05, help="chord error of other faces (0.05)"
     )
     outputs.add(mesh)
+    figures.add(mesh)
     mesh.set_defaults(do=_mesh)
     scan = commands.add_parser(
         "scan",
-        help="align a scan of the really ground part and compare it with the prediction",
+        help="align a scan of the ground part and compare it with the prediction (docs/scan.md)",
         description="Keeps the measured heights with the result. Where the scan starts: as it lies, "
         "by --matrix, by --pairs, or by --principal.",
     )
@@ -38,6 +38,7 @@ def add(commands):
     scan.add_argument("--max-distance-mm", type=float, help="farther points are not of the part")
     scan.add_argument("--share", type=float, default=0.9, help="of the pairs, not trimmed (0.9)")
     scan.add_argument("--search-mm", type=float, help="for the surface, along the normals")
+    figures.add(scan)
     scan.set_defaults(do=_scan)
 
 
@@ -54,7 +55,7 @@ def _mesh(arguments):
         quiet=True,
     )
     arguments.messages.print_warnings(found.pop("warnings"))
-    print(json.dumps(found, allow_nan=False))
+    figures.tell(arguments, found)
 
 
 def _scan(arguments):
@@ -75,12 +76,12 @@ def _scan(arguments):
         "search_mm": arguments.search_mm,
         "aligned": arguments.aligned,
     }
-    figures = background.run(
+    found = background.run(
         lambda context: scan.compare(
             result, arguments.scan, arguments.unit_mm, context=context, **options
         ),
         quiet=True,
     )
-    scan.write(result, figures)
-    arguments.messages.print_warnings(figures["warnings"])
-    print(json.dumps(figures, allow_nan=False))
+    scan.write(result, found)
+    arguments.messages.print_warnings(found["warnings"])
+    figures.tell(arguments, found)

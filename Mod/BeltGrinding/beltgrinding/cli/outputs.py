@@ -48,15 +48,17 @@ def add(parser):
 
 def check(arguments, outputs, inputs=(), result=None):
     """Raises InputError where one of ``outputs`` (paths, or None) is one of ``inputs`` or a file of the
-    ``result``'s folder, or, without ``--force``, a file that this program has not written.
+    ``result``'s folder, or, without ``--force``, a file that this program has not written. Where one is ``-``, standard
+    output is left to it.
     """
+    from ..base import standard
     from ..engine import InputError
     from ..simulation import result_folder
 
     read = [Path(path) for path in inputs if path]
     if result is not None:
         read += [Path(result, name) for name in (*result_folder.FILES, result_folder.SCAN)]
-    read = {os.path.realpath(path): path for path in read}
+    read = {os.path.realpath(path): path for path in read if not standard.named(path)}
     written = {}
     for path in filter(None, outputs):
         real = os.path.realpath(path)
@@ -71,6 +73,9 @@ def check(arguments, outputs, inputs=(), result=None):
                 "cli.output_twice", "{file}: two results would be written there", file=path
             )
         written[real] = path
+        if standard.named(path):
+            standard.keep_for_file()
+            continue
         if not arguments.force and os.path.isfile(real) and not _ours(Path(real), result):
             raise InputError(
                 "cli.not_ours",

@@ -137,6 +137,7 @@ class CommandLine(Parser):
         lines.append("Options:")
         lines += [f"  {name:<18}{text}" for name, text in self._own_options()]
         lines += ["", f"'{PROGRAM} help COMMAND' has the options of a command, and examples."]
+        lines.append("In a file's place - is standard input or output.")
         with contextlib.suppress(FileNotFoundError):
             lines.append(f"The pages docs/... lie in {documentation()}.")
         return "\n".join(lines) + "\n"

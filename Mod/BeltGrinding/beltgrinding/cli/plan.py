@@ -11,7 +11,7 @@ PLANNING = 0.6  # of the time; the rest reads and simulates what was written
 def add(commands):
     """Adds the command to the parser's ``commands``."""
     plan = commands.add_parser(
-        "plan", help="feeds with which a job's programs keep the tolerance (docs/planning.md)"
+        "plan", help="find feeds with which a job's programs keep the tolerance (docs/planning.md)"
     )
     plan.add_argument("job", help="job.json")
     plan.add_argument(

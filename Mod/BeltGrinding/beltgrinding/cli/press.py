@@ -1,9 +1,8 @@
 """One contact, and surrogates learnt from many."""
 
-import json
 import sys
 
-from . import background, outputs
+from . import background, figures, outputs
 
 
 def add(commands):
@@ -16,6 +15,7 @@ def add(commands):
     contact.add_argument("--reference", choices=("ccx",), help="solve it by CalculiX as well")
     contact.add_argument("--keep", help="folder for CalculiX's deck and results")
     outputs.add(contact)
+    figures.add(contact)
     contact.set_defaults(do=_contact)
     learn = commands.add_parser(
         "surrogate", help="train a surrogate of the contact on a database of solved contacts"
@@ -28,6 +28,7 @@ def add(commands):
     learn.add_argument("--database", help="file that keeps the database (.npz)")
     learn.add_argument("--train-on", help="a database of your own in place of a contact.json")
     outputs.add(learn)
+    figures.add(learn)
     learn.set_defaults(do=_surrogate)
 
 
@@ -45,15 +46,15 @@ def _contact(arguments):
             lambda context: contact.at_pose(given, arguments.pose, arguments.program, context),
             quiet=True,
         )
-    figures, truth = contact.summary(result), None
+    found, truth = contact.summary(result), None
     if arguments.reference:
         from ..contact import finite_elements as reference
 
         truth = reference.solve(result, contact.rim(given), arguments.keep)
-        figures.update(reference.compare(result, truth))
+        found.update(reference.compare(result, truth))
     if arguments.output:
         contact.write_csv(result, arguments.output, truth)
-    print(json.dumps(figures, allow_nan=False))
+    figures.tell(arguments, found)
 
 
 def _surrogate(arguments):
@@ -86,4 +87,4 @@ def _surrogate(arguments):
             surrogate_file.save_database(database, arguments.database)
     trained, report = surrogate.train(database, arguments.seed)
     surrogate_file.save(trained, arguments.output)
-    print(json.dumps(report, allow_nan=False))
+    figures.tell(arguments, report)

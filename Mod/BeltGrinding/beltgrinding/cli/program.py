@@ -4,7 +4,7 @@ import json
 import math
 from pathlib import Path
 
-from . import background, frames_options, outputs, robot_program, settings
+from . import background, figures, frames_options, outputs, robot_program, settings
 
 
 def add(commands):
@@ -63,6 +63,7 @@ def add(commands):
     )
     robot_program.add_unsafe(program)
     outputs.add(program)
+    figures.add(program)
     program.set_defaults(do=_program)
     raster = commands.add_parser("raster", help="lay passes on the job's faces (docs/raster.md)")
     raster.add_argument("job", help="job.json; it need not have a program yet")
@@ -103,6 +104,7 @@ def add(commands):
     frames_options.add(raster)
     add_form(raster)
     outputs.add(raster)
+    figures.add(raster)
     raster.set_defaults(do=_raster)
     reach = commands.add_parser("reach", help="follow a job's programs with its robot's joints")
     reach.add_argument("job", help="job.json")
@@ -115,6 +117,7 @@ def add(commands):
         help="search where the robot, or its external axes, reach the whole program farthest from limits and singularities",
     )
     outputs.add(reach)
+    figures.add(reach)
     reach.set_defaults(do=_reach)
 
 
@@ -220,9 +223,7 @@ def _program(arguments):
     try:
         if action == "write":
             changed = patch(*files, arguments.output, device)
-            print(
-                json.dumps({"changed": len(changed), "motions": changed}, indent=2, allow_nan=False)
-            )
+            figures.tell(arguments, {"changed": len(changed), "motions": changed}, indent=2)
             return
         program = read_program(
             files[0],
@@ -245,7 +246,7 @@ def _program(arguments):
                 program, files[0], lambda values: read_program(files[0], values=values)
             )
             file, count = given.write_template(program, files[0], data)
-            print(json.dumps({"values": str(file), "to_be_given": count}, allow_nan=False))
+            figures.tell(arguments, {"values": str(file), "to_be_given": count})
             arguments.status = 0
             if varies:
                 note = Fact(
@@ -262,7 +263,7 @@ def _program(arguments):
         raise cannot_be_written(arguments.output, error) from None
     arguments.messages.print_written(notes)
     found = table.summary(program, arguments.messages.everything)
-    print(json.dumps(found, indent=2, allow_nan=False))
+    figures.tell(arguments, found, indent=2)
     _tell_read(arguments, program, read, said)
 
 
@@ -323,7 +324,7 @@ def _raster(arguments):
         _write_raster(arguments, arguments.output, job, found)
         if drawn is not None:
             _write_picture(arguments.picture, drawn)
-        print(json.dumps(raster.summary(found), allow_nan=False))
+        figures.tell(arguments, raster.summary(found))
         return
     steps = [(job, wanted)] + [(raster.load_job(one), wanted) for one, _ in arguments.then]
     laid, places = background.run(lambda context: in_turn(steps, context), quiet=True)
@@ -333,7 +334,7 @@ def _raster(arguments):
             _write_raster(arguments, file, one, found)
     left = float(places["areas"][places["left"]].sum() / places["areas"].sum())
     summaries = [None if found is None else raster.summary(found) for found in laid]
-    print(json.dumps({"wheels": summaries, "left_by_all": left}, allow_nan=False))
+    figures.tell(arguments, {"wheels": summaries, "left_by_all": left})
 
 
 def _laid_and_drawn(job, settings, picture, context):
@@ -412,8 +413,5 @@ def _reach(arguments):
     arguments.messages.print_warnings(warnings)
     begins = [sum(path.duration() for path in paths[:i]) for i in range(len(paths))]
     events = event_lists.merge([(i, begins[i], one["events"]) for i, one in enumerate(found)])
-    print(
-        json.dumps(
-            {**reach.summary(given["robot"], found), "events": events}, indent=2, allow_nan=False
-        )
-    )
+    told = {**reach.summary(given["robot"], found), "events": events}
+    figures.tell(arguments, told, indent=2)

@@ -2,8 +2,7 @@
 
 from pathlib import Path
 
-from . import background, outputs
-from .messages import print_text
+from . import background, figures, outputs
 
 
 def add(commands):
@@ -24,6 +23,7 @@ def add(commands):
     told.add_argument("--language", choices=("en", "de"), default="en", help="default en")
     told.add_argument("--title", help="what the part is called (default: its file's name)")
     outputs.add(told)
+    figures.add(told)
     told.set_defaults(do=_report)
 
     finer = commands.add_parser(
@@ -37,6 +37,7 @@ def add(commands):
     finer.add_argument("-o", "--output", required=True, help="folder for the results")
     finer.add_argument("-q", "--quiet", action="store_true", help="no progress, no answer")
     outputs.add(finer)
+    figures.add(finer)
     finer.set_defaults(do=_converge)
 
 
@@ -52,7 +53,9 @@ def _converge(arguments):
     result.write(arguments.output, arguments.force, used)
     if not arguments.quiet:
         arguments.messages.print_warnings(result.convergence["notes"])
-        print_text(" ".join(convergence_section.sentences(result.convergence, language.Language())))
+    if arguments.json or not arguments.quiet:
+        text = " ".join(convergence_section.sentences(result.convergence, language.Language()))
+        figures.tell(arguments, result.convergence, text)
 
 
 def _report(arguments):
@@ -72,4 +75,5 @@ def _report(arguments):
             context,
         )
 
-    print_text(str(background.run(work, quiet=True)))
+    file = str(background.run(work, quiet=True))
+    figures.tell(arguments, {"file": file}, file)

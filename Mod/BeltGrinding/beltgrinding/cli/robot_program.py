@@ -1,8 +1,7 @@
 """A program for the whole robot of a job."""
 
-import json
 
-from . import background, frames_options, outputs
+from . import background, figures, frames_options, outputs
 
 NAME = "whole_robot"  # of a plan's program
 LANGUAGES = (".src", ".mod", ".script")  # in which that may be: those that set frames by numbers
@@ -45,7 +44,7 @@ def write(arguments, files):
     given = {"form": arguments.form, **frames_options.given(arguments)}
     whole, notes = _planned(arguments.output, job, arguments, **given)
     arguments.messages.print_written(notes)
-    print(json.dumps(writing.summary(whole), indent=2, allow_nan=False))
+    figures.tell(arguments, writing.summary(whole), indent=2)
 
 
 def _planned(file, job, arguments, **options):

@@ -4,15 +4,14 @@ import os
 import sys
 from pathlib import Path
 
-from . import background, interrupts, outputs, plan_batch, settings, where
-from .messages import print_text
+from . import background, figures, interrupts, outputs, plan_batch, settings, where
 
 
 def add(commands):
     """Adds the command to the parser's ``commands``."""
     sort = commands.add_parser(
         "sort",
-        help="castings by their scans: passes, passes with a plan of its own, scrap (docs/castings.md)",
+        help="sort castings by their scans: passes, passes with a plan of its own, scrap (docs/castings.md)",
         description="Grinds each raw part as its scan shows it, by the job's program; plans feeds for those that do not "
         "pass; tells why the others cannot be saved.",
     )
@@ -38,6 +37,7 @@ def add(commands):
     )
     sort.add_argument("-q", "--quiet", action="store_true", help="no progress, no summary")
     outputs.add(sort)
+    figures.add(sort)
     sort.set_defaults(do=_sort)
 
 
@@ -90,13 +90,15 @@ def _sort(arguments):
     if chunk is not None:
         return
     sorting_report.write(arguments.output, batch, job, arguments.share, arguments.language)
-    if arguments.quiet:
+    if arguments.quiet and not arguments.json:
         return
-    for row in batch.parts:
-        print_text(f"{row['part']}: {row['sorted']}{_why(row)}")
+    lines = [f"{row['part']}: {row['sorted']}{_why(row)}" for row in batch.parts]
     found = sorting_report.counts(batch)
     text = ", ".join(f"{count} {sort}" for sort, count in found.items() if count)
-    print_text(f"{text}; {batch.reused} were there already" if batch.reused else text)
+    lines.append(f"{text}; {batch.reused} were there already" if batch.reused else text)
+    parts = {row["part"]: row["sorted"] for row in batch.parts}
+    told = {"sorts": found, "there_already": batch.reused, "parts": parts}
+    figures.tell(arguments, told, "\n".join(lines))
 
 
 def _command(arguments):

@@ -1,11 +1,12 @@
 """One job many times, with what varies."""
 
+import json
 import os
 import sys
 import time
 from pathlib import Path
 
-from . import background, interrupts, where
+from . import background, figures, interrupts, where
 from .messages import print_text
 
 LOG_S = 60.0  # between two lines of progress where standard error is no terminal
@@ -16,7 +17,7 @@ def add(commands):
     """Adds the command to the parser's ``commands``."""
     study = commands.add_parser(
         "study",
-        help="a job many times, with what varies (docs/study.md)",
+        help="run a job many times with other values (docs/study.md)",
         description="Makes the runs of a study that are not in its folder yet, and writes the table. What is finished stays, "
         "whatever happens; the same command goes on.",
     )
@@ -35,6 +36,7 @@ def add(commands):
         "--no-report", action="store_true", help="the table alone, no answers, report and pictures"
     )
     study.add_argument("-q", "--quiet", action="store_true", help="no progress, no summary")
+    figures.add(study)
     study.set_defaults(do=_study)
 
 
@@ -46,6 +48,7 @@ def _study(arguments):
         raise InputError(
             "cli.study_workers", "--workers {count}: give 0 or more", count=arguments.workers
         )
+    arguments.quiet = arguments.quiet or arguments.json
     chunk = where.chunk(arguments)
     prepared = background.run(
         lambda context: making.prepare(making.load(arguments.study), context), quiet=True
@@ -84,23 +87,25 @@ def _study(arguments):
         raise shown.kept(arguments.output) or error from None
     finally:
         shown.end()
-    _tell(found, arguments, chunk)
+    told = _tell(found, arguments, chunk)
     if chunk is None and not arguments.no_report and found.table.done.any():
-        _answer(found, arguments)
+        told["answers"] = _answer(found, arguments)
+    if arguments.json:
+        figures.tell(arguments, told)
 
 
 def _answer(found, arguments):
-    """Writes answers, report and pictures; what they warn of is a warning."""
+    """Writes answers, report and pictures; what they warn of is a warning. Returns what the answers' file holds."""
     from ..studies import report
 
     said = background.run(
         lambda context: report.write_answers(arguments.output, arguments.language, context, found),
         quiet=True,
     )
-    if arguments.quiet:
-        return
-    arguments.messages.print_notes(said["note_facts"])
-    print_text(f"{report.REPORT}, {report.ANSWERS} and {report.PICTURES} in {arguments.output}")
+    if not arguments.quiet:
+        arguments.messages.print_notes(said["note_facts"])
+        print_text(f"{report.REPORT}, {report.ANSWERS} and {report.PICTURES} in {arguments.output}")
+    return json.loads(Path(arguments.output, report.ANSWERS).read_bytes())
 
 
 def _count(survey, arguments):
@@ -114,7 +119,8 @@ def _count(survey, arguments):
 
 
 def _tell(found, arguments, chunk):
-    """Prints what came out; failed runs are warnings, or errors where nothing came out or another try may mend them."""
+    """Prints what came out, and returns its counts; failed runs are warnings, or errors where nothing came out or another
+    try may mend them."""
     from ..engine import Fact, InputError
     from ..studies import table
 
@@ -126,8 +132,9 @@ def _tell(found, arguments, chunk):
             f"{done} of {len(made)} runs have figures, {found.reused} were there already; "
             f"{table.FILE} in {arguments.output}"
         )
+    told = {"runs": len(made), "done": done, "there_already": found.reused, "failed": len(failed)}
     if not failed:
-        return
+        return told
     run, error = int(made[table.RUN][failed[0]]), made[table.ERROR][failed[0]]
     if found.broken_off:
         raise InputError(
@@ -156,6 +163,7 @@ def _tell(found, arguments, chunk):
             )
         ]
     )
+    return told
 
 
 class _Shown:

@@ -2,8 +2,7 @@
 
 from pathlib import Path
 
-from . import background, outputs
-from .messages import print_text
+from . import background, figures, outputs
 
 
 def add(commands):
@@ -20,6 +19,7 @@ def add(commands):
     turned.add_argument("--language", choices=("en", "de"), default="en", help="default en")
     turned.add_argument("--title", help="what the part is called (default: its file's name)")
     outputs.add(turned)
+    figures.add(turned)
     turned.set_defaults(do=_view)
 
 
@@ -35,4 +35,5 @@ def _view(arguments):
             arguments.result, arguments.output, arguments.language, arguments.title, context
         )
 
-    print_text(str(background.run(work, quiet=True)))
+    file = str(background.run(work, quiet=True))
+    figures.tell(arguments, {"file": file}, file)

@@ -462,7 +462,7 @@ def _check_program(path: DocumentObject, output: Path, others: Sequence[Path]) -
     if path.Values:
         raise InputError(
             "planning.values_in_document",
-            "{object}: its values stand in the document; save them beside the program first",
+            "{object}: its values are in the document; save them beside the program first",
             object=path.Label,
         )
     read, mine = read_again(path)["frames"], path.Proxy.arrays(path)["frames"]

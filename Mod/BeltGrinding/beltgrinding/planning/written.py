@@ -61,7 +61,7 @@ def write_read(
     wanted = changes(found, number)
     try:
         if "values" in entry and not isinstance(entry["values"], str):
-            raise InputError("planning.inline_values", "its values stand in the job")
+            raise InputError("planning.inline_values", "its values are in the job, not in a file")
         write_changed(source, wanted, output, found.commands.device)
     except OSError as error:
         raise cannot_be_written(output, error) from None

@@ -38,7 +38,7 @@ struct Argument {
     bool operator==(const Argument&) const = default;
 };
 
-using Arguments = std::vector<Argument>;
+using Arguments = std::vector<Argument>;  ///< of a fact
 
 /// Something that is told: what it is by a code, and its numbers and names. Whoever shows it makes
 /// the sentence, in English from `text`, in other languages from Resources/messages.

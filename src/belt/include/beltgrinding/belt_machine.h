@@ -25,7 +25,7 @@ struct AbrasiveBelt {
     double membrane() const { return youngs_modulus * thickness; }
     /// `surface_stiffness`, or what stands for it, MPa/mm.
     double face() const;
-    /// Throws InputError naming the value that is none.
+    /// Throws InputError naming the invalid value.
     void validate() const;
 };
 
@@ -58,7 +58,7 @@ struct Platen {
 
     /// rad that the face has turned by at its ends; 0 of a flat one.
     double end_angle() const;
-    /// Throws InputError naming the value that is none.
+    /// Throws InputError naming the invalid value.
     void validate() const;
 };
 
@@ -75,14 +75,14 @@ struct BeltMachine {
 
     /// The belt is not wrapped round a wheel where it is pressed: a free belt, a platen.
     bool free_face() const { return kind == Kind::kFreeBelt || kind == Kind::kPlaten; }
-    /// Throws InputError naming the value that is none; of wheels, nothing is looked at.
+    /// Throws InputError naming the value that is invalid; of wheels, nothing is looked at.
     void validate() const;
 };
 
 /// The contact model of a free belt or a platen. The gap of its problems is that to the flat belt
 /// which touches nothing: mm from the plane of the belt's face to the surface, z into the work, on
 /// a regular grid over x (along the belt) and y. Pressures are forces a projected area, along z.
-/// Throws InputError for parameters that are none, std::invalid_argument for the kinds that are
+/// Throws InputError for invalid parameters, std::invalid_argument for the kinds that are
 /// wheels (`make_contact_model`).
 std::unique_ptr<ContactModel> make_belt_contact(const BeltMachine& machine);
 

@@ -101,7 +101,7 @@ class PreparedContact {
     /// Name and parameters of the model as it is used here, for the report.
     const std::string& describe() const { return description_; }
     /// `start`, if not null, is a pressure (MPa per cell) to start from. Throws InputError for a
-    /// problem that is none, or not of this grid; Cancelled, after which it can solve anew.
+    /// problem that is invalid, or not of this grid; Cancelled, after which it can solve anew.
     ContactSolution solve(const ContactProblem& problem, const Eigen::ArrayXd* start = nullptr);
     /// For another one, of the same model and grid, to go on from to the last bit. Null: the
     /// pressure is all.
@@ -110,7 +110,7 @@ class PreparedContact {
     virtual void remember(const std::shared_ptr<const ContactMemory>&) {}
 
   protected:
-    /// Throws InputError for a grid that is none.
+    /// Throws InputError for an invalid grid.
     PreparedContact(const ContactGrid& grid, std::string description);
 
   private:
@@ -131,7 +131,7 @@ class ContactModel {
 
     /// The model on a grid. What depends on the cells is kept, so that another number of cells
     /// along the circumference is prepared quickly. Safe from several threads. Throws InputError
-    /// for a grid that is none.
+    /// for an invalid grid.
     std::unique_ptr<PreparedContact> prepare(const ContactGrid& grid) const;
     /// True if there is no elasticity at all: no pressure can be solved for, and the tool's
     /// envelope is what remains.

@@ -78,7 +78,7 @@ struct ProcessSettings {
     BeltWear wear;                ///< how k_t falls with use
     BeltState belt;               ///< what the belt has done before
 
-    /// Throws InputError naming the setting that is none.
+    /// Throws InputError naming the invalid setting.
     void validate() const;
 };
 
@@ -89,7 +89,7 @@ struct Resolution {
     double max_travel = 1.0;          ///< mm, how far the contact point may move in a step
     double max_angle = 0.02;          ///< rad, how far the wheel may turn against the work in one
 
-    /// Throws InputError naming the setting that is none.
+    /// Throws InputError naming the invalid setting.
     void validate() const;
 };
 
@@ -105,7 +105,7 @@ struct MonitorLimits {
     /// mm, height below which a sample is cut too deep: one for all, or one per sample; empty: none
     std::vector<float> lower = {};
 
-    /// Throws InputError naming the limit that is none. `samples`: of the field.
+    /// Throws InputError naming the invalid limit. `samples`: of the field.
     void validate(std::size_t samples) const;
 };
 
@@ -122,7 +122,7 @@ struct HeatRequest {
     double start = 20.0;       ///< degrees C, of the part
     double burn = 0.0;         ///< degrees C above which the material is burnt; 0: not known
 
-    /// Throws InputError naming the setting that is none.
+    /// Throws InputError naming the invalid setting.
     void validate(std::size_t samples) const;
 };
 
@@ -157,7 +157,7 @@ struct FinishRequest {
     double rest = 0.0;                 ///< share of the roughness before that a pass leaves, [0, 1)
     double before = std::numeric_limits<double>::quiet_NaN();  ///< um, Ra of the part; NaN: unknown
 
-    /// Throws InputError naming the setting that is none.
+    /// Throws InputError naming the invalid setting.
     void validate() const;
 };
 

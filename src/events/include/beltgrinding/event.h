@@ -27,7 +27,7 @@ struct EventKind {
 /// All kinds, in the order of the manual's table.
 std::span<const EventKind> event_kinds();
 
-/// The kind with that code. Throws std::logic_error for one that is none.
+/// The kind with that code. Throws std::logic_error for an unknown one.
 const EventKind& event_kind(const std::string& code);
 
 /// "info", "warning" or "error".

@@ -33,7 +33,7 @@ struct HeatMaterial {
 /// `PartHeat`, temperatures are rises above the start's.
 struct HeatState {
     static constexpr std::uint32_t kNever = 0xFFFFFFFF;  ///< no motion
-    static constexpr std::size_t kModes = 16;
+    static constexpr std::size_t kModes = 16;            ///< of heat across the depth
 
     double time = 0.0;                  ///< s of process, through all programs
     double heated = 0.0;                ///< s, when heat came last

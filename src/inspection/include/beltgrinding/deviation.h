@@ -40,7 +40,7 @@ struct DeviationStatistics {
     std::size_t defective = 0;               ///< whose stock lay below the design
 };
 
-/// Of all samples. Throws InputError for a band that is none.
+/// Of all samples. Throws InputError for an invalid band.
 DeviationStatistics deviation_statistics(const HeightField& field, const Tolerance& tolerance);
 
 /// Colours that say the verdict and are told apart by colour-blind people: one calm colour inside

@@ -40,8 +40,8 @@ struct ContactModelParameters {
 };
 
 /// The contact model for `wheel`. `force` (N), about which it will be pressed, is used by an
-/// elastic foundation without a stiffness only. Throws InputError for another name, or parameters
-/// that are none.
+/// elastic foundation without a stiffness only. Throws InputError for another name, or
+/// invalid parameters.
 std::unique_ptr<ContactModel> make_contact_model(const ContactModelParameters& parameters,
                                                  const ContactWheel& wheel, double force);
 

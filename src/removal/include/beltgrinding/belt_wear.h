@@ -43,7 +43,7 @@ class BeltWear {
     static Variable variable_named(const std::string& name);
 
     BeltWear() = default;
-    /// Throws InputError for parameters that are none.
+    /// Throws InputError for invalid parameters.
     explicit BeltWear(Parameters parameters);
 
     /// k_t of a belt in the state. Exponential: rest + (1 - rest) exp(-W/scale); two-stage: rest +

@@ -68,7 +68,7 @@ struct LocalLawParameters {
 /// land_share g_p(p / land_share).
 class LocalLaw final : public RemovalLaw {
   public:
-    /// Throws InputError for parameters that are none.
+    /// Throws InputError for invalid parameters.
     explicit LocalLaw(LocalLawParameters parameters);
     void rate(const Eigen::ArrayXd& pressure, const ProcessState& state,
               Eigen::ArrayXd& rate) const override;
@@ -96,7 +96,7 @@ class HammannLaw final : public RemovalLaw {
 };
 
 /// The law that is named: "local" (LocalLaw) or "hammann" (HammannLaw, of the coefficient alone).
-/// Throws InputError for another name, or parameters that are none.
+/// Throws InputError for another name, or invalid parameters.
 std::unique_ptr<RemovalLaw> make_removal_law(const std::string& name,
                                              const LocalLawParameters& parameters);
 

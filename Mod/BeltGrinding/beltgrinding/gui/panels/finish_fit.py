@@ -208,7 +208,7 @@ def _quality(report: Json) -> str:
     lines = [
         translate(
             "BeltGrinding",
-            "{} measurements. Left out one by one, they are told with a median error of {:.1f} %, nine of ten "
+            "{} measurements. Left out one by one, they are predicted with a median error of {:.1f} %, nine of ten "
             "within {:.0f} %.",
         ).format(report["measurements"], *percent(report["left_out"])),
         translate(

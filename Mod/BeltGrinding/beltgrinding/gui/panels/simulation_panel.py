@@ -123,7 +123,7 @@ class SimulationPanel(RunPanel):
             text = translate("BeltGrinding", "Out of date: an input has changed since.")
         elif limits_changed(self.job, simulation):
             text = translate(
-                "BeltGrinding", "The limits have changed since: gouges are told by the old ones."
+                "BeltGrinding", "The limits have changed since: gouges are by the old ones."
             )
         else:
             text = translate("BeltGrinding", "Done.")

@@ -27,8 +27,8 @@ WHAT = {
     "base": Fact("programs.writers.base", "base"),
 }
 NOT_TOLD = {
-    "tool": Fact("programs.writers.tool_not_told", "a tool of which nothing is told"),
-    "base": Fact("programs.writers.base_not_told", "a base of which nothing is told"),
+    "tool": Fact("programs.writers.tool_not_told", "an unknown tool"),
+    "base": Fact("programs.writers.base_not_told", "an unknown base"),
 }
 
 # A frame for all, or by its words: its name, its number, its 4 x 4 in mm, ``AS_KNOWN``, None.

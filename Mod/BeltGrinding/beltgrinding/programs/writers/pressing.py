@@ -74,7 +74,7 @@ def not_set(sheet: Sheet) -> list[Fact]:
     return [
         Fact(
             "programs.writers.force_not_set",
-            "the file does not set the pressing force ({least:.4g} to {most:.4g} N stand in its comments): set it by "
+            "the file does not set the pressing force (its comments have {least:.4g} to {most:.4g} N): set it by "
             "hand, or say by belt_machine.force_device how a program sets it (docs/force-device.md)",
             least=min(forces),
             most=max(forces),

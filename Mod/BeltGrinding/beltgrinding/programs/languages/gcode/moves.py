@@ -36,7 +36,7 @@ NO_TARGET = {*LIMITS, *AXES_OF_FRAME}
 # Reasons that hold for many motions of a file, made once.
 TILTED = Fact(
     "programs.gcode.tilted",
-    "how the tool stands in a turned frame is known to the control only; write A3, B3, C3 with ORIWKS",
+    "only the control knows the orientation of the tool in a turned frame; write A3, B3, C3 with ORIWKS",
 )
 KINEMATICS = {fact.code for fact in (MACHINE_COORDINATES, A_AND_B, TILTED)}
 

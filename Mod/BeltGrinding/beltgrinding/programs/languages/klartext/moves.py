@@ -46,7 +46,7 @@ KINEMATICS = Fact(
     "post-process with tool-centre-point control",
 )
 NOT_TILTED = Fact(
-    "programs.klartext.stay", "where the rotary axes stand in the tilted plane is not known"
+    "programs.klartext.stay", "the angles of the rotary axes in the tilted plane are not known"
 )
 
 

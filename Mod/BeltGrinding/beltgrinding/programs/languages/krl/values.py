@@ -201,7 +201,7 @@ class Values:
             return Lost(
                 (
                     "programs.krl.other_type",
-                    "its value is none of a variable of the type {kind}",
+                    "its value does not fit a variable of the type {kind}",
                     {"kind": kind.upper()},
                 )
             )

@@ -337,7 +337,7 @@ class State(Telling):
         if isinstance(value, str) != text or isinstance(value, (bool, list, Record)):
             raise Unknown(
                 "programs.val3.wrong_field_value",
-                "the value is none for the field {field}",
+                "the value does not fit the field {field}",
                 field=field,
             )
         return value

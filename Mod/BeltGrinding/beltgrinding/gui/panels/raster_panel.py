@@ -188,6 +188,7 @@ class RasterPanel(Panel):
         form.add("ApproachLength", translate("BeltGrinding", "Approach length"))
         form.add("ApproachFeed", translate("BeltGrinding", "Approach feed"))
         form.add("Clearance", translate("BeltGrinding", "Clearance"))
+        form.add("Active", translate("BeltGrinding", "Active in runs"))
         form.changed = self.changed
         return form
 

@@ -196,13 +196,13 @@ def unit_of(obj: DocumentObject, name: str) -> str:
 
 
 def check_limits(obj: DocumentObject, keys: Iterable[Key]) -> None:
-    """Raises InputError for the first property that lies outside of the schema's limits."""
+    """Raises InputError, which names the job's key, for the first property that lies outside of the schema's limits."""
     for key in keys:
         low, high, open_low = limits(obj, key.name)
         value = getattr(obj, key.name)
         number = getattr(value, "Value", value)
         if low is not None and (number < low or open_low and number == low):
-            given = {"object": obj.Label, "key": key.name, "value": value, "limit": low}
+            given = {"object": obj.Label, "key": key.key, "value": value, "limit": low}
             if open_low:
                 raise InputError(
                     "objects.not_above",
@@ -219,7 +219,7 @@ def check_limits(obj: DocumentObject, keys: Iterable[Key]) -> None:
                 "objects.above",
                 "{object}: {key} is {value}; it must be at most {limit:g}",
                 object=obj.Label,
-                key=key.name,
+                key=key.key,
                 value=value,
                 limit=high,
             )

@@ -56,4 +56,4 @@ def _page(action: Any) -> str:
     return PAGES.get(name.removeprefix(PREFIX), "") if name.startswith(PREFIX) else ""
 
 
-command_help = CommandHelp()
+commands_help = CommandHelp()

@@ -69,15 +69,15 @@ class PreferencesPage:
 
     def _check_limits(self) -> None:
         """Marks the limits where they are swapped, and says that they will not be stored."""
-        text = ""
+        text = more = ""
         if self._swapped():
             text = translate("BeltGrinding", "The lower limit lies above the upper limit.")
-            text += " " + translate("BeltGrinding", "Both stay as they were.")
+            more = text + " " + translate("BeltGrinding", "Both stay as they were.")
         self.wrong.setText(text)
         self.wrong.setVisible(bool(text))
         for name in LIMITS:
             self.defaults[name].setStyleSheet(WRONG if text else "")
-            self.defaults[name].setToolTip(text)
+            self.defaults[name].setToolTip(more)
 
     def _simulation(self) -> Widget:
         box, rows = _group(translate("BeltGrinding", "Simulation"))

@@ -55,9 +55,9 @@ def fill(workbench: Any) -> list[str]:
 
 def activated() -> None:
     """What is to be done whenever the workbench is chosen, once FreeCAD has made its menus and toolbars."""
-    from .command_help import command_help
+    from .command_help import commands_help
 
-    command_help.watch()
+    commands_help.watch()
 
 
 def at_start() -> None:

@@ -64,7 +64,7 @@ class ScanPanel(Panel):
         self.source.currentIndexChanged.connect(self._enable)
         self.datum = QtGui.QLineEdit()
         self.datum.setObjectName("datum")
-        self.datum.setPlaceholderText(translate("BeltGrinding", "all that are not ground"))
+        self.datum.setPlaceholderText(translate("BeltGrinding", "all not ground"))
         self.datum.setToolTip(
             translate("BeltGrinding", "numbers of the faces that the scan is laid on, as 1,2,5")
         )

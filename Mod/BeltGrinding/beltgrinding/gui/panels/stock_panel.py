@@ -62,7 +62,7 @@ class StockPanel(Panel):
         rows.addRow(translate("BeltGrinding", "Start"), self.start)
         self.datum = QtGui.QLineEdit()
         self.datum.setObjectName("scanDatum")
-        self.datum.setPlaceholderText(translate("BeltGrinding", "all that are not ground"))
+        self.datum.setPlaceholderText(translate("BeltGrinding", "all not ground"))
         rows.addRow(translate("BeltGrinding", "Datum faces"), self.datum)
         self.lay = QtGui.QPushButton(translate("BeltGrinding", "Lay the scan on the design"))
         self.lay.setObjectName("layScan")

@@ -33,9 +33,9 @@ def export_template(job: DocumentObject, path: Path | str) -> Path:
     stock = child(job, stocks.Stock)
     if stock is not None and stock.Kind == "allowance":
         data["stock"] = {"kind": "allowance", "allowance_mm": stock.Allowance.Value}
-    held = {"template": 1, **{room: data[room] for room in ROOMS if data.get(room)}}
     for room, key in OF_PART:
-        held.get(room, {}).pop(key, None)
+        data.get(room, {}).pop(key, None)
+    held = {"template": 1, **{room: data[room] for room in ROOMS if data.get(room)}}
     path = Path(path)
     try:
         write_whole(path, (json.dumps(held, indent=2, allow_nan=False) + "\n").encode())

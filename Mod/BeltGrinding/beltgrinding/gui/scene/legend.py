@@ -290,7 +290,8 @@ class Legend:
         event, action = node.getEvent(), node.getAction()
         if not coin.SoMouseButtonEvent.isButtonPressEvent(event, coin.SoMouseButtonEvent.BUTTON1):
             return
-        box = self.boxes.get(tuple(action.getViewportRegion().getViewportSizePixels().getValue()))
+        width, height = action.getViewportRegion().getViewportSizePixels().getValue()
+        box = self.boxes.get((width, height))
         x, y = event.getPosition().getValue()
         if self.spec is None or box is None:
             return

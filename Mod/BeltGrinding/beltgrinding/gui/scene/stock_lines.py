@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import FreeCADGui as Gui
 from pivy import coin
 
@@ -31,15 +33,14 @@ class StockLines:
 
     def show(self, job: DocumentObject | None) -> None:
         """Draws the stock of a job as it is now; nothing where it is no solid."""
-        stock = None if job is None else child(job, Stock)
-        solid = stock is not None and stock.Kind == "solid" and stock.Source is not None
-        solid = solid and bool(getattr(getattr(stock.Source, "Shape", None), "Edges", ()))
-        source = stock.Source if solid else None
-        key = (source.Shape.hashCode(), source.getGlobalPlacement().toMatrix().A) if solid else ()
+        source = _solid_of(None if job is None else child(job, Stock))
+        key: tuple[Any, ...] = ()
+        if source is not None:
+            key = source.Shape.hashCode(), source.getGlobalPlacement().toMatrix().A
         if not self.drawn.needed(*key):
             return
         self.root.removeAllChildren()
-        if not solid:
+        if source is None:
             return
         lines = line_set(placed_shape(source), COLOUR)
         for function, pattern in (
@@ -57,3 +58,9 @@ class StockLines:
             if scene.findChild(self.root) >= 0:
                 scene.removeChild(self.root)
         self.scenes = []
+
+
+def _solid_of(stock: DocumentObject | None) -> DocumentObject | None:
+    """The solid that a stock is; None of another one."""
+    source = stock.Source if stock is not None and stock.Kind == "solid" else None
+    return source if getattr(getattr(source, "Shape", None), "Edges", ()) else None

@@ -11,6 +11,7 @@ from ..common.compat import QtGui, translate
 from ..common.kinds import Json
 from ..common.messages import error_text
 from ..common.report_language import language
+from ..widgets.active_programs import active_box
 from ..widgets.form import Form
 from ..widgets.pose_walk import PoseTable, PoseWalk
 from ..widgets.program_values import ProgramValues
@@ -47,7 +48,6 @@ class ProgramPanel(Panel):
             form.add("Source", translate("BeltGrinding", "File"), programs_filter())
         form.add("FeedOverride", translate("BeltGrinding", "Feed (0: as programmed)"))
         form.add("ForceOverride", translate("BeltGrinding", "Force (0: as programmed)"))
-        form.add("Active", translate("BeltGrinding", "Active in runs"))
         rolls = {
             "hold": translate("BeltGrinding", "held along a pass"),
             "along": translate("BeltGrinding", "along the pass"),
@@ -57,6 +57,7 @@ class ProgramPanel(Panel):
         form.add("RollDirection", translate("BeltGrinding", "Direction of travel"))
         self.overrides = form
         self.body.addWidget(form)
+        self.body.addWidget(active_box(obj, translate("BeltGrinding", "Active in runs")))
         again = QtGui.QPushButton(translate("BeltGrinding", "Read the file again"))
         again.setObjectName("reload")
         again.clicked.connect(self.reload)

@@ -1,4 +1,4 @@
-"""A check box for each program of a job: whether runs take it."""
+"""Check boxes of a job's programs: whether runs take them."""
 
 from __future__ import annotations
 
@@ -6,6 +6,17 @@ from collections.abc import Sequence
 
 from ...objects.kinds import DocumentObject
 from ..common.compat import QtGui, translate
+from ..common.kinds import Widget
+
+
+def active_box(path: DocumentObject, text: str) -> Widget:
+    """A check box that sets ``Active`` of a program."""
+    box = QtGui.QCheckBox(text)
+    box.setObjectName(f"active{path.Name}")
+    box.setToolTip(path.getDocumentationOfProperty("Active"))
+    box.setChecked(path.Active)
+    box.toggled.connect(lambda on: setattr(path, "Active", on))
+    return box
 
 
 class ActivePrograms(QtGui.QWidget):
@@ -17,12 +28,7 @@ class ActivePrograms(QtGui.QWidget):
         column = QtGui.QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         for path in programs:
-            box = QtGui.QCheckBox(path.Label)
-            box.setObjectName(f"active{path.Name}")
-            box.setToolTip(path.getDocumentationOfProperty("Active"))
-            box.setChecked(path.Active)
-            box.toggled.connect(lambda on, path=path: setattr(path, "Active", on))
-            column.addWidget(box)
+            column.addWidget(active_box(path, path.Label))
 
     def summary(self) -> str:
         """How many a run takes."""

@@ -19,7 +19,7 @@ from ..common.editing import edit
 from .panel import Panel
 
 SHOWN_PROBLEMS = stored_facts.MOST  # more are kept in English only
-TABLE_HEIGHT = 260  # pixels
+TABLE_HEIGHT = 236  # pixels
 _open: list[ProgramPanel] = []  # the panel that is open
 
 

@@ -12,7 +12,10 @@ import beltgrinding
 from beltgrinding.gui.commands import MENU
 from beltgrinding.gui.common import help_pages
 from beltgrinding.gui.common.chosen import active_job
+from beltgrinding.gui.common.messages import error_text
 from beltgrinding.gui.preferences_page import PreferencesPage
+from beltgrinding.objects.belt_machine import KEYS
+from beltgrinding.objects.properties import check_limits
 from support.hands import (
     choose,
     click_at,
@@ -308,3 +311,31 @@ def test_a_program_is_left_out_of_a_run():
     assert list(simulation.Programs) == ["pass"] and simulation.RemovedVolume.Value < 0.7 * both
     data = beltgrinding.export_job(job, "one.json").read_text()
     assert '"pass"' in data and '"second"' not in data
+
+
+def test_a_plan_that_lacks_something_leaves_nothing_behind():
+    job = prepare()
+    doc = job.Document
+    doc.RobotPath.Active = False
+    doc.recompute()
+    doc.clearUndos()
+    settle()
+    menu("Plan feeds...")
+    field("plan", QtGui.QPushButton).click()
+    settle()
+    assert "left out" in field("state").text()
+    press("Close")
+    assert [obj for obj in doc.Objects if obj.Name.startswith("Plan")] == []
+    assert doc.UndoCount == 0
+
+
+def test_a_message_of_limits_names_the_field():
+    job = prepare()
+    machine = job.Document.BeltMachine
+    machine.WheelRadius = 0.0
+    with pytest.raises(beltgrinding.InputError) as told:
+        check_limits(machine, KEYS)
+    assert "belt_machine.wheel.radius_mm is 0" in str(told.value)
+    text = error_text(told.value)
+    assert "“Belt machine: Wheel radius”" in text, text
+    assert "WheelRadius" not in text and "radius_mm" not in text, text

@@ -301,14 +301,17 @@ def test_a_program_is_left_out_of_a_run():
     doc.recompute()
     assert not simulation.OutOfDate
     second.ViewObject.Proxy.setupContextMenu(second.ViewObject, entered := QtGui.QMenu())
-    entry = next(a for a in entered.actions() if a.text() == "Active in runs")
-    assert entry.isChecked()
-    entry.trigger()
+    next(a for a in entered.actions() if a.text() == "Leave out of runs").trigger()
     settle()
     assert not second.Active and "LeftOut" in second.ViewObject.Proxy.getIcon()
     assert simulation.OutOfDate
     beltgrinding.simulate(job)
     assert list(simulation.Programs) == ["pass"] and simulation.RemovedVolume.Value < 0.7 * both
+    second.ViewObject.Proxy.setupContextMenu(second.ViewObject, entered := QtGui.QMenu())
+    next(a for a in entered.actions() if a.text() == "Take into runs").trigger()
+    assert second.Active
+    doc.undo()
+    assert not second.Active
     data = beltgrinding.export_job(job, "one.json").read_text()
     assert '"pass"' in data and '"second"' not in data
 

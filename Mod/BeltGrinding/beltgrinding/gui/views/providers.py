@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import FreeCAD
+import FreeCADGui as Gui
 import numpy as np
 from pivy import coin
 
@@ -16,7 +17,7 @@ from ...objects.kinds import DocumentObject, ViewObject
 from ...objects.robot_path import load_program
 from ..common.chosen import activate, jobs_of
 from ..common.compat import translate
-from ..common.icons import pale_icon, qicon
+from ..common.icons import icon, pale_icon, qicon
 from ..common.kinds import Menu
 from ..common.redraw import Once
 from ..scene import left_out, path_arrows, stock_shell
@@ -89,7 +90,8 @@ class JobView(View):
 
     def own_entries(self, obj: DocumentObject, menu: Menu) -> None:
         if len(jobs_of(obj.Document)) > 1:
-            menu.addAction(translate("BeltGrinding", "Make active"), lambda: activate(obj))
+            text = translate("BeltGrinding", "Make active")
+            menu.addAction(qicon(self.ICON), text, lambda: activate(obj))
 
     def canDropObject(self, dropped: DocumentObject) -> bool:
         return True
@@ -243,10 +245,11 @@ class RobotPathView(View):
         if obj.Source:
             text = translate("BeltGrinding", "Read the file again")
             menu.addAction(qicon("BeltGrinding_ReadAgain"), text, lambda: read_again(obj))
-        entry = menu.addAction(translate("BeltGrinding", "Active in runs"))
-        entry.setCheckable(True)
-        entry.setChecked(obj.Active)
-        entry.triggered.connect(lambda *_: set_active(obj, not obj.Active))
+        if obj.Active:
+            picture, text = pale_icon(self.ICON), translate("BeltGrinding", "Leave out of runs")
+        else:
+            picture, text = icon(self.ICON), translate("BeltGrinding", "Take into runs")
+        menu.addAction(Gui.getIcon(picture), text, lambda: set_active(obj, not obj.Active))
 
     def getIcon(self) -> str:
         view = getattr(self, "view", None)

@@ -177,6 +177,11 @@ def property_of(obj: DocumentObject, key: str) -> str:
     return next(mine, "")
 
 
+def keys_of(name: str) -> set[str]:
+    """The keys of a job that properties of this name mirror, whichever object has them."""
+    return {one.key for (_, other), one in _keys.items() if other == name}
+
+
 UNITS = {  # what a key ends with: the unit
     "_mm_s2": "mm/s²",
     "_mm_s": "mm/s",
@@ -196,13 +201,13 @@ def unit_of(obj: DocumentObject, name: str) -> str:
 
 
 def check_limits(obj: DocumentObject, keys: Iterable[Key]) -> None:
-    """Raises InputError, which names the job's key, for the first property that lies outside of the schema's limits."""
+    """Raises InputError for the first property that lies outside of the schema's limits."""
     for key in keys:
         low, high, open_low = limits(obj, key.name)
         value = getattr(obj, key.name)
         number = getattr(value, "Value", value)
         if low is not None and (number < low or open_low and number == low):
-            given = {"object": obj.Label, "key": key.key, "value": value, "limit": low}
+            given = {"object": obj.Label, "key": key.name, "value": value, "limit": low}
             if open_low:
                 raise InputError(
                     "objects.not_above",
@@ -219,7 +224,7 @@ def check_limits(obj: DocumentObject, keys: Iterable[Key]) -> None:
                 "objects.above",
                 "{object}: {key} is {value}; it must be at most {limit:g}",
                 object=obj.Label,
-                key=key.key,
+                key=key.name,
                 value=value,
                 limit=high,
             )

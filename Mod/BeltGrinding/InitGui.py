@@ -17,6 +17,11 @@ class BeltGrindingWorkbench(FreeCADGui.Workbench):
 
         self.work = workbench.fill(self)
 
+    def Activated(self):
+        from beltgrinding.gui import workbench
+
+        workbench.activated()
+
     def ContextMenu(self, recipient):
         from beltgrinding.gui import workbench
 

@@ -101,6 +101,7 @@ class Manual:
             "ToolTip": QT_TRANSLATE_NOOP(
                 "BeltGrinding_Manual", "Opens the manual: tutorial, every panel, troubleshooting"
             ),
+            "WhatsThis": self.NAME,
             "CmdType": "ForEdit",  # changes nothing: stays there while a panel is open
         }
 

@@ -16,10 +16,12 @@ from .common.compat import QtGui, translate
 from .common.kinds import Colour, Layout, Widget
 from .common.messages import error_text
 from .common.redraw import drawing
-from .widgets.form import quantity_field, show_quantity
+from .common.theme import warning_style
+from .widgets.form import WRONG, quantity_field, show_quantity, watch_quantity
 from .widgets.steady import steady
 
 MOST_THREADS = 1024
+LIMITS = "DefaultToleranceLower", "DefaultToleranceUpper"
 
 
 class PreferencesPage:
@@ -50,7 +52,32 @@ class PreferencesPage:
                 field.setProperty("minimum", 1e-6)
             rows.addRow(text, field)
             self.defaults[name] = field
+        self.wrong = QtGui.QLabel()
+        self.wrong.setObjectName("wrongDefaults")
+        self.wrong.setWordWrap(True)
+        self.wrong.setStyleSheet(warning_style(True))
+        self.wrong.hide()
+        rows.addRow(self.wrong)
+        for name in LIMITS:
+            watch_quantity(self.defaults[name], self._check_limits)
         return box
+
+    def _swapped(self) -> bool:
+        """Whether the lower limit lies above the upper one."""
+        lower, upper = (float(self.defaults[name].property("rawValue")) for name in LIMITS)
+        return lower > upper
+
+    def _check_limits(self) -> None:
+        """Marks the limits where they are swapped, and says that they will not be stored."""
+        text = more = ""
+        if self._swapped():
+            text = translate("BeltGrinding", "The lower limit lies above the upper limit.")
+            more = text + " " + translate("BeltGrinding", "Both stay as they were.")
+        self.wrong.setText(text)
+        self.wrong.setVisible(bool(text))
+        for name in LIMITS:
+            self.defaults[name].setStyleSheet(WRONG if text else "")
+            self.defaults[name].setToolTip(more)
 
     def _simulation(self) -> Widget:
         box, rows = _group(translate("BeltGrinding", "Simulation"))
@@ -120,10 +147,10 @@ class PreferencesPage:
         """Stores what is shown, and lets it take effect."""
         group = preferences.parameters()
         values = {name: float(f.property("rawValue")) for name, f in self.defaults.items()}
-        if values["DefaultToleranceLower"] > values["DefaultToleranceUpper"]:
-            text = translate("BeltGrinding", "The lower limit lies above the upper limit.")
-            FreeCAD.Console.PrintWarning(text + "\n")
-            del values["DefaultToleranceLower"], values["DefaultToleranceUpper"]
+        if self._swapped():
+            FreeCAD.Console.PrintWarning(self.wrong.text() + "\n")
+            for name in LIMITS:
+                del values[name]
         for name, value in values.items():
             # What nobody changed goes on following the schema's default.
             if abs(value - preferences.job_default(name)) > 1e-12:

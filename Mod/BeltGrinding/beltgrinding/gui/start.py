@@ -15,8 +15,8 @@ from .manual import Manual, help_key
 PACKAGES = "numpy", "jsonschema"  # else missed only when a job is made; package.xml names them
 
 
-def register() -> tuple[dict[str, list[str]], list[str], dict[str, list[str]]]:
-    """Tells FreeCAD the commands; returns ({toolbar: names}, names of the menu, {submenu: names}).
+def register() -> tuple[dict[str, list[str]], list[tuple[str, list[str]]]]:
+    """Tells FreeCAD the commands; returns ({toolbar: names}, [(submenu, or "" for the menu itself, names)]).
 
     Where something that they need cannot be loaded, says so in the report view and in one message,
     and returns the manual alone. FreeCAD calls this when the workbench is first chosen.
@@ -29,12 +29,12 @@ def register() -> tuple[dict[str, list[str]], list[str], dict[str, list[str]]]:
         from . import commands
     except ImportError as error:
         tell(reason(error))
-        return {}, [Manual.NAME], {}
+        return {}, [("", [Manual.NAME])]
     from .common.field_words import in_words  # not above: commands have said what is missing
 
     messages.show_keys_as(in_words)
-    toolbars, menu, submenus = commands.register()
-    return toolbars, [*menu, "Separator", Manual.NAME], submenus
+    toolbars, menu = commands.register()
+    return toolbars, [*menu, ("", ["Separator", Manual.NAME])]
 
 
 def reason(error: ImportError) -> str:

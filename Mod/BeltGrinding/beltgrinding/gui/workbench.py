@@ -41,17 +41,23 @@ def fill(workbench: Any) -> list[str]:
     """
     from . import start
 
-    toolbars, menu, submenus = start.register()
+    toolbars, menu = start.register()
     for title, names in toolbars.items():
         workbench.appendToolbar(title, names)
     if toolbars:
         from ..objects.importer import SHARED_TYPE
 
         FreeCAD.addImportType(*SHARED_TYPE)
-    workbench.appendMenu(MENU, menu)
-    for title, names in submenus.items():
-        workbench.appendMenu([MENU, title], names)
+    for title, names in menu:
+        workbench.appendMenu([MENU, title] if title else MENU, names)
     return [name for names in toolbars.values() for name in names]
+
+
+def activated() -> None:
+    """What is to be done whenever the workbench is chosen, once FreeCAD has made its menus and toolbars."""
+    from .command_help import commands_help
+
+    commands_help.watch()
 
 
 def at_start() -> None:

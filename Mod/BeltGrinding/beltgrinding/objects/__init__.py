@@ -30,6 +30,8 @@ DOCUMENT_FUNCTIONS = (
     "write_report",
     "check_settings",
     "export_job",
+    "export_template",
+    "apply_template",
     "import_result",
     "open_example",
     "open_job",

@@ -39,6 +39,7 @@ from .set_up import (
     wear_belt,
 )
 from .stock_scan import lay_stock
+from .templates import apply_template, export_template
 from .study_runs import make_study, open_study_run
 
 apply_threads()  # before anything computes, whoever calls: a button or a macro

@@ -6,6 +6,7 @@ import hashlib
 import json
 import math
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -18,15 +19,14 @@ from ..engine import InputError, core
 from ..job import engine_input, load as jobs
 from ..job.poses import list_poses
 from ..job.workpiece import OwnBrep
-from . import bodies
+from . import bodies, ground_by
 from .belt_machine import BeltMachine
 from .damage import check_job
 from .geometry import faces_digest
-from .job_data import KEYS, child, children, design, flips, required
+from .job_data import KEYS, child, design, flips, required
 from .kinds import DocumentObject, PartFace
 from .program_values import no_path
 from .properties import to_job
-from .robot_path import RobotPath
 from .stock import Stock
 
 TURN = ("qw", "qx", "qy", "qz")  # of a pose
@@ -72,15 +72,6 @@ def without_programs(job: DocumentObject, folder: Path | str) -> dict[str, Any]:
     return jobs.validate(data, folder)
 
 
-def _paths(job: DocumentObject) -> list[DocumentObject]:
-    paths = children(job, RobotPath)
-    if not paths:
-        raise InputError(
-            "objects.no_program", "{object} has no robot program; import one", object=job.Label
-        )
-    return paths
-
-
 def overrides(path: DocumentObject) -> dict[str, float]:
     """A program's keys that replace its own feeds and forces."""
     keys = {}
@@ -107,7 +98,7 @@ def fingerprint(job: DocumentObject) -> str:
     data["design"]["digest"] = faces_digest(f for i, f in enumerate(shape.Faces, 1) if i in chosen)
     data["cell"]["bodies"] = bodies.digest(child(job, BeltMachine))
     data["programs"] = [
-        {**overrides(path), "digest": path.Proxy.digest(path)} for path in _paths(job)
+        {**overrides(path), "digest": path.Proxy.digest(path)} for path in ground_by.required(job)
     ]
     return hashlib.sha256(json.dumps(data, sort_keys=True, allow_nan=False).encode()).hexdigest()
 
@@ -126,7 +117,7 @@ def to_data(
     stock = required(job, Stock, "stock")
     data["stock"] = stock.Proxy.to_job(stock, meshes or folder)
     data["cell"]["bodies"] = bodies.to_job(child(job, BeltMachine), meshes or folder)
-    paths = _paths(job)
+    paths = ground_by.required(job)
     data["programs"] = [{"poses": []} for _ in paths]
     # The poses come from properties that hold nothing but numbers, and they may be many.
     data = jobs.validate(data, folder)
@@ -196,13 +187,16 @@ def _without_file(data: Json) -> dict[str, Any]:
     return {key: value for key, value in data.items() if key not in ("file", "left_by")}
 
 
-def tool_paths(job: DocumentObject) -> list[core.ToolPath]:
-    """core.ToolPath of every program, one after the other as they are run. Raises InputError."""
+def tool_paths(
+    job: DocumentObject, programs: Sequence[DocumentObject] | None = None
+) -> list[core.ToolPath]:
+    """core.ToolPath of every program, one after the other as they are run; ``programs``: of these. Raises
+    InputError."""
     data = without_geometry(job)
     machine: DocumentObject = child(job, BeltMachine)
     cell = machine.Proxy.cell(machine)
     paths = []
-    for path in _paths(job):
+    for path in ground_by.required(job) if programs is None else programs:
         arrays = dict(path.Proxy.arrays(path))
         keys = overrides(path)
         for name, key in (("feeds", "feed_mm_s"), ("forces", "force_N")):

@@ -82,9 +82,8 @@ class BeltGrindingJob(Proxy):
         if obj.ToleranceLower > obj.ToleranceUpper:
             raise InputError(
                 "objects.limits_swapped",
-                "{object}: ToleranceLower lies above ToleranceUpper",
+                "{object}: the lower limit lies above the upper limit",
                 object=obj.Label,
-                key="ToleranceLower",
             )
         tolerances.check_zones(zones(obj), design(obj)[1], bool(obj.Finish))
 

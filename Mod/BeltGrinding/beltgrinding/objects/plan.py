@@ -21,14 +21,14 @@ from ..planning import from_file, grinding, pictures, rounds as plans, wheels, w
 from ..planning.search import Search
 from ..programs.force_device import ForceDevice
 from ..programs.writers.writer import zones_written
-from . import job_inputs, result_files, stored_facts
+from . import ground_by, job_inputs, result_files, stored_facts
 from .belt_machine import BeltMachine
-from .job_data import KEYS as JOB_KEYS, children, inspection, required
+from .job_data import KEYS as JOB_KEYS, inspection, required
 from .kinds import DocumentObject
 from .properties import Key, Output, add_keys, add_outputs, from_job, to_job
 from .proxy import Proxy
 from .raster_path import KEYS as PASSES, RasterPath, settings_of, take
-from .robot_path import RobotPath, force_device, read_again, roll_of
+from .robot_path import force_device, read_again, roll_of
 
 EXPORTED = "passes.src"  # as what a path is exported
 PLANNING = 0.6  # of the time; the rest reads and simulates what would be written
@@ -166,8 +166,8 @@ def fingerprint(obj: DocumentObject, job: DocumentObject) -> str:
 
 
 def paths_of(job: DocumentObject) -> list[DocumentObject]:
-    """The job's paths, in the order in which they are ground."""
-    return children(job, RobotPath)
+    """The job's paths that are ground, in their order."""
+    return ground_by.active(job)
 
 
 def sources(job: DocumentObject) -> list[str | None]:
@@ -190,12 +190,12 @@ def entry(path: DocumentObject) -> dict[str, Any] | None:
 
 
 def passes_of(job: DocumentObject) -> DocumentObject:
-    """The raster path of a job that has no other path; it is the one that is laid anew. Raises InputError."""
+    """The raster path of a job that no other path grinds; it is the one that is laid anew. Raises InputError."""
     paths = paths_of(job)
     if len(paths) != 1 or not isinstance(paths[0].Proxy, RasterPath):
         raise InputError(
             "planning.no_passes",
-            "{object}: to lay passes anew it must have one raster path and no other program; it has {paths}",
+            "{object}: to lay passes anew it must have one active raster path and no other active program; it has {paths}",
             object=job.Label,
             paths=", ".join(path.Label for path in paths) or "-",
         )

@@ -177,6 +177,11 @@ def property_of(obj: DocumentObject, key: str) -> str:
     return next(mine, "")
 
 
+def keys_of(name: str) -> set[str]:
+    """The keys of a job that properties of this name mirror, whichever object has them."""
+    return {one.key for (_, other), one in _keys.items() if other == name}
+
+
 UNITS = {  # what a key ends with: the unit
     "_mm_s2": "mm/s²",
     "_mm_s": "mm/s",

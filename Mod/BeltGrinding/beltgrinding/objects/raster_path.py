@@ -307,6 +307,7 @@ def to_what_others_leave(obj: DocumentObject) -> None:
         other
         for other in obj.Document.Objects
         if other is not obj
+        and getattr(other, "Active", False)
         and isinstance(getattr(other, "Proxy", None), RasterPath)
         and chosen <= {(part.Name, name) for part, names in other.Faces for name in names}
     ]

@@ -121,6 +121,10 @@ class RobotPath(Proxy):
                 obj.setEditorMode(name, 2)
         add("Speed", "FeedOverride", "Program", "one feed for all poses; 0: as programmed")
         add("Force", "ForceOverride", "Program", "one force for all poses; 0: as programmed")
+        if add(
+            "Bool", "Active", "Program", "runs, plans and exported jobs take it; else leave it out"
+        ):
+            obj.Active = True
         for name, text in FRAMES:
             add("String", name, "Export", text)
         if add("Link", "Machine", "Program", "the belt machine, for the cell's frames"):

@@ -14,14 +14,13 @@ from ..base.kinds import Array, Context, Facts, Json
 from ..engine import InputError, core
 from ..robot_program import walk as walks, write as writing
 from ..robot_program.moves import Whole
-from . import job_inputs, stored_facts
+from . import ground_by, job_inputs, stored_facts
 from .belt_machine import BeltMachine
 from .creation import make_child
-from .job_data import child, children, required
+from .job_data import child, required
 from .kinds import DocumentObject, Event
 from .properties import Output, add_outputs
 from .proxy import Proxy
-from .robot_path import RobotPath
 
 PLANNING = 0.85  # of the time; the rest looks at what is near on the way
 GROUP = "Robot program"
@@ -159,7 +158,7 @@ def write_robot_program(obj: DocumentObject, file: Path | str, unsafe: bool = Fa
     Returns what ``write_program`` does. Raises InputError."""
     check(obj, unsafe)
     whole, job = Whole.from_data(json.loads(obj.RobotMoves)), obj.getParentGroup()
-    first = children(job, RobotPath)[0]
+    first = ground_by.required(job)[0]
     with job_inputs.scratch_folder() as folder:
         return writing.write(
             file,

@@ -14,16 +14,15 @@ import numpy as np
 from ..base.kinds import Json, known
 from ..studies import vary
 from ..studies.keys import Key as JobKey
-from . import belt, belt_machine, job_data, stock
+from . import belt, belt_machine, ground_by, job_data, stock
 from .belt import Belt
 from .belt_machine import FRAMES, BeltMachine
 from .geometry import placement_from_job, placement_to_job
-from .job_data import child, children
+from .job_data import child
 from .job_inputs import without_geometry
 from .kinds import DocumentObject
 from .properties import FACTOR, get_value, rule, set_value
 from .proxy import type_of
-from .robot_path import RobotPath
 from .stock import Stock
 
 if TYPE_CHECKING:
@@ -71,7 +70,7 @@ def choices(job: DocumentObject) -> list[Choice]:
                     list(about["enum"]) if words else None,
                 )
             )
-    for k, path in enumerate(children(job, RobotPath)):
+    for k, path in enumerate(ground_by.active(job)):
         for name, value in zip(OF_PROGRAM, _of_path(path)):
             found.append(Choice(f"programs[{k}].{name}", f"{path.Label}: {name}", value, None))
     for name in OF_PROGRAM:
@@ -128,7 +127,7 @@ def base(job: DocumentObject) -> dict[str, Any]:
             "feed_mm_s": path.FeedOverride.Value or None,
             "force_N": path.ForceOverride.getValueAs("N").Value or None,
         }
-        for path in children(job, RobotPath)
+        for path in ground_by.active(job)
     ]
     return json.loads(json.dumps(data, allow_nan=False))
 
@@ -175,7 +174,7 @@ def _put(job: DocumentObject, one: vary.Variable, made: Json) -> None:
             obj, held = known(_holder(job, one.key.text))
             set_value(obj, held, _value(made, held.key))
             return
-        for k, path in enumerate(children(job, RobotPath)):
+        for k, path in enumerate(ground_by.active(job)):
             if programs[1] in ("*", str(k)):
                 value = made["programs"][k][programs[2]]
                 scale = FACTOR["Force"] if programs[2] == "force_N" else 1.0

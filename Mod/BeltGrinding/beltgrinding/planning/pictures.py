@@ -24,17 +24,17 @@ WIDTH = 800  # pixels of one of the pictures side by side
 LETTERS, ROW = 24, 36  # pixels
 SMALLEST = 5e-4  # of the area, that a reason is told for
 INSIDE = 0xDDE3E8FF  # in tolerance
-COLOURS = {  # of the reasons, 0xRRGGBBAA
-    reasons.NOT_REACHED: 0xB39DDBFF,
-    reasons.NO_ROOM: 0x7A1FA2FF,
-    reasons.FRINGE: 0xCE93D8FF,
-    reasons.BORDER: 0x00897BFF,
-    reasons.SLOWEST: 0xE65100FF,
-    reasons.FASTEST: 0x1565C0FF,
-    reasons.PRESSURE: 0xC2185BFF,
-    reasons.CHANGE: 0x546E7AFF,
-    reasons.KEPT: 0x5D4037FF,
-    reasons.SHARED: 0xF9A825FF,
+COLOURS = {  # of the reasons, 0xRRGGBBAA: any colour vision tells them apart
+    reasons.NOT_REACHED: 0x557EFFFF,
+    reasons.NO_ROOM: 0x0000C9FF,
+    reasons.FRINGE: 0xA55B65FF,
+    reasons.BORDER: 0x77D888FF,
+    reasons.SLOWEST: 0xD34013FF,
+    reasons.FASTEST: 0xB28BCEFF,
+    reasons.PRESSURE: 0x720000FF,
+    reasons.CHANGE: 0x001420FF,
+    reasons.KEPT: 0x623776FF,
+    reasons.SHARED: 0xFABD26FF,
 }
 WORDS = {
     "before": "before",

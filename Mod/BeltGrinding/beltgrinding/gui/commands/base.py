@@ -13,8 +13,10 @@ from ...objects.job_data import child
 from ...objects.job_object import BeltGrindingJob
 from ...objects.kinds import Document, DocumentObject
 from ...objects.proxy import type_of
-from ..common.chosen import active_job
+from ..common.chosen import activate, active_job, jobs_of
+from ..common.compat import translate
 from ..common.icons import icon
+from ..common.greyed import say_reason
 from ..common.messages import report
 from ..common.transaction import transaction
 
@@ -30,22 +32,37 @@ def expand(job: DocumentObject) -> None:
     Gui.getDocument(job.Document.Name).toggleTreeItem(job, EXPAND)
 
 
-def always() -> bool:
-    return True
+# Whether a command can run: '' if so, else why not and what to do.
 
 
-def has_document() -> bool:
-    return FreeCAD.ActiveDocument is not None
+def always() -> str:
+    return ""
 
 
-def has_job() -> bool:
-    return active_job() is not None
+def no_document() -> str:
+    if FreeCAD.ActiveDocument is not None:
+        return ""
+    return translate("BeltGrinding", "No document is open: open or make one.")
 
 
-def has_result() -> bool:
-    """Whether the active job was simulated."""
-    job = active_job()
-    return job is not None and child(job, simulation.Simulation) is not None
+def no_job() -> str:
+    """Why there is no active job."""
+    if active_job() is not None:
+        return ""
+    reason = no_document()
+    if reason:
+        return reason
+    if jobs_of(FreeCAD.ActiveDocument):
+        return translate("BeltGrinding", "The document has several jobs: select one in the tree.")
+    return translate("BeltGrinding", "The document has no job: select faces and press New job.")
+
+
+def no_result() -> str:
+    """Why the active job has no result."""
+    reason = no_job()
+    if reason or child(active_job(), simulation.Simulation) is not None:
+        return reason
+    return translate("BeltGrinding", "The job has no result yet: press Simulate.")
 
 
 def make(
@@ -81,28 +98,44 @@ def make_once(
 
 
 class Command:
-    """A command as FreeCAD takes it. ``run()``: does its work, and raises what is to be told; ``ready()``: whether it
-    can, while no panel is open."""
+    """A command as FreeCAD takes it. ``run()``: does its work, and raises what is to be told; ``missing()``: '' if it
+    can, else why not, which its tooltip says; ``keys``: its shortcut."""
 
     def __init__(
         self,
         name: str,
         text: str,
         tip: str,
+        keys: str,
         run: Callable[[], object],
-        ready: Callable[[], bool] = has_job,
+        missing: Callable[[], str] = no_job,
     ) -> None:
-        self.name, self.text, self.tip = PREFIX + name, text, tip
-        self.run, self.ready = run, ready
+        self.name, self.text, self.tip, self.keys = PREFIX + name, text, tip, keys
+        self.run, self.missing = run, missing
 
     def GetResources(self) -> dict[str, str]:
-        return {"Pixmap": icon(self.name), "MenuText": self.text, "ToolTip": self.tip}
+        return {
+            "Pixmap": icon(self.name),
+            "MenuText": self.text,
+            "ToolTip": self.tip,
+            "WhatsThis": self.name,
+            "CmdType": "ForEdit",  # else FreeCAD greys it beside a panel without asking why
+            **({"Accel": self.keys} if self.keys else {}),
+        }
 
     def IsActive(self) -> bool:
-        return not Gui.Control.activeDialog() and self.ready()
+        if Gui.Control.activeDialog():
+            reason = translate("BeltGrinding", "A task panel is open: close it first.")
+        else:
+            reason = self.missing()
+        say_reason(self.name, reason)
+        return not reason
 
     def Activated(self, index: int = 0) -> None:
         try:
+            job = active_job()
+            if job is not None:
+                activate(job)
             self.run()
         except Exception as error:
             report(error)

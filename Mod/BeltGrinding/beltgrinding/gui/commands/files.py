@@ -39,6 +39,25 @@ def export_job() -> None:
         api.export_job(active_job(), path)
 
 
+def _templates_filter() -> str:
+    return translate("BeltGrinding", "Template") + " (*.json)"
+
+
+def export_template() -> None:
+    title = translate("BeltGrinding", "Save as template")
+    path = file_to_write(title, "template.json", _templates_filter())
+    if path:
+        api.export_template(active_job(), path)
+
+
+def apply_template() -> None:
+    title, job = translate("BeltGrinding", "Apply template"), active_job()
+    path = QtGui.QFileDialog.getOpenFileName(Gui.getMainWindow(), title, "", _templates_filter())[0]
+    if path:
+        with transaction(job.Document, title):
+            api.apply_template(job, path)
+
+
 def import_result() -> None:
     title = translate("BeltGrinding", "Folder of the result")
     folder = QtGui.QFileDialog.getExistingDirectory(Gui.getMainWindow(), title)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import FreeCADGui as Gui
+
 from ...objects import api, deviation
 from ...objects.job_data import children
 from ..common.compat import translate
@@ -25,5 +27,9 @@ def compare_scan() -> None:
     from ..panels.scan_panel import ScanPanel
 
     job = active_job()
+    selected = Gui.Selection.getSelection(job.Document.Name)
     job.Document.openTransaction(translate("BeltGrinding", "Compare a scan"))
-    show_panel(ScanPanel(job), job)
+    panel = ScanPanel(job)
+    for obj in selected[:1]:
+        panel.choose(obj)
+    show_panel(panel, job)

@@ -15,7 +15,7 @@ from ..common.messages import error_text, inform
 from ..common.save_dialog import file_to_write
 from ..common.transaction import transaction
 from ..common.editing import edit
-from .base import active_job, make, make_once
+from .base import active_job, make, make_once, no_document
 
 
 def choose_program() -> None:
@@ -94,8 +94,13 @@ def _to_export() -> list[DocumentObject]:
     return []
 
 
-def can_export() -> bool:
-    return bool(_to_export())
+def no_path() -> str:
+    """Why there is no path to export."""
+    if FreeCAD.ActiveDocument is None:
+        return no_document()
+    if _to_export():
+        return ""
+    return translate("BeltGrinding", "The document has no robot path: import or lay one.")
 
 
 def export_program() -> None:

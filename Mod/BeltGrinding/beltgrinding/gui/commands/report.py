@@ -10,13 +10,16 @@ from ...objects.kinds import Sheet
 from ..common.compat import translate
 from ..common.save_dialog import file_to_write
 from ..common.task_panel import show_panel
-from .base import active_job, has_result, make
+from .base import active_job, no_result, make
 
 
-def can_report() -> bool:
+def no_report() -> str:
+    """Why no report can be written now."""
     from ..common.report_writer import ReportWriter
 
-    return has_result() and ReportWriter.running is None
+    if ReportWriter.running is not None:
+        return translate("BeltGrinding", "A report is being written: wait for it.")
+    return no_result()
 
 
 def write_report() -> None:

@@ -8,6 +8,7 @@ import FreeCADGui as Gui
 from ...engine import InputError
 from ...objects import api, belt_machine, first_settings, preferences, stock
 from ...objects.kinds import DocumentObject
+from ..common.chosen import activate
 from ..common.compat import translate
 from ..common.transaction import transaction
 from ..common.task_panel import show_panel
@@ -45,6 +46,7 @@ def new_job() -> DocumentObject | None:
     if step.failed:
         return None
     expand(job)
+    activate(job)
     return job
 
 

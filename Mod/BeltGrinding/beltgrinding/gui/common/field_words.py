@@ -1,17 +1,19 @@
-"""Messages in the window's words: a key of the job file is the label of its field there, an option of the command line
-the field or the command that does the same."""
+"""Messages in the window's words: a key of the job file, or a property, is the label of its field there, an option of
+the command line the field or the command that does the same."""
 
 from __future__ import annotations
 
 import re
 from functools import lru_cache
 
+from ...objects.properties import keys_of
 from .compat import translate
 from .field_labels import LABELS
 
 KEY = re.compile(
     r"(?<![\w./\\\]-])('?)([a-z]\w*(?:\.\w+)+|[a-z]+(?:_\w+)+)(?:\[(\d)\])?\1(?![\w/(])"
 )
+PROPERTY = re.compile(r"(?<![\w.“])[A-Z][a-z]+(?:[A-Z][a-z]+)+(?!\w)")
 OPTION = re.compile(r"(?<![\w-])(?:--[a-z][a-z-]*|beltgrind [a-z][a-z-]*)(?!\w)")
 marked_there = translate  # of labels, which the panels mark as texts to be translated
 UNIT = re.compile(r"\s*\([^)]*\)$|,\s[^,]*$")  # what a label says beside the field's name
@@ -20,7 +22,14 @@ UNIT = re.compile(r"\s*\([^)]*\)$|,\s[^,]*$")  # what a label says beside the fi
 def in_words(text: str) -> str:
     """The text with labels in place of keys, and what the window has in place of options and commands."""
     text = OPTION.sub(lambda found: _option(found.group()) or found.group(), text)
+    text = PROPERTY.sub(lambda found: _of_property(found.group()) or found.group(), text)
     return KEY.sub(_label, text)
+
+
+def _of_property(name: str) -> str:
+    """The field of a property; '' where it has none, or there are several."""
+    found = {named(key) for key in keys_of(name)}
+    return found.pop() if len(found) == 1 else ""
 
 
 def _label(found: re.Match[str]) -> str:

@@ -1,11 +1,11 @@
-"""Which page of the manual tells of a panel or a dock: F1 there opens it."""
+"""Which page of the manual tells of a command, a panel or a dock: F1 there opens it."""
 
 from __future__ import annotations
 
 from .kinds import Widget
 
 PROPERTY = "beltGrindingPage"  # of a panel's form, or a dock
-PAGES = {  # name of the command whose icon it bears: page of docs/
+PAGES = {  # name of a command, whose icon a panel bears: page of docs/
     "Belt": "workbench-machine.md",
     "BeltMachine": "workbench-machine.md",
     "BeltPlan": "belt-plan.md",
@@ -14,11 +14,30 @@ PAGES = {  # name of the command whose icon it bears: page of docs/
     "CheckSettings": "convergence.md",
     "Contact": "contact.md",
     "Deviation": "workbench-results.md",
+    "ExampleBlade": "examples.md",
+    "ExampleEdges": "examples.md",
+    "ExampleKnife": "examples.md",
+    "ExampleTap": "examples.md",
+    "ExampleTapBelt": "examples.md",
+    "ExampleVane": "examples.md",
+    "ExportJob": "workbench-export.md",
+    "ExportProgram": "workbench-programs.md",
+    "Figures": "workbench-export.md",
+    "FollowPath": "workbench-programs.md",
+    "GrindFaces": "planning.md",
+    "GroundMesh": "ground-mesh.md",
     "ImportProgram": "workbench-programs.md",
+    "ExportTemplate": "workbench-export.md",
+    "ApplyTemplate": "workbench-export.md",
+    "ImportResult": "workbench-export.md",
     "Job": "workbench-job.md",
+    "Manual": "index.md",
+    "OpenJob": "workbench-export.md",
     "Plan": "planning.md",
     "Playback": "workbench-run.md",
     "RasterPath": "raster.md",
+    "ReadAgain": "workbench-programs.md",
+    "Report": "report.md",
     "RobotPath": "workbench-programs.md",
     "RobotProgram": "robot.md",
     "Scan": "scan.md",

@@ -14,6 +14,8 @@ from .kinds import Icon
 from .theme import theme
 
 SIZE = 64  # pixels of an icon that is put together
+PALE = 0.4  # opacity of the icon of what is left out
+CROSSED, STROKE = "#d03030", 6  # the line through it, its pixels
 BADGE = 0.62  # of its side: the mark in its corner
 _marked = {}  # name -> file
 
@@ -46,11 +48,34 @@ def stale_icon(name: str) -> str:
     return _marked[name]
 
 
+def pale_icon(name: str) -> str:
+    """Path of the icon ``name`` as that of what is left out: pale and crossed out."""
+    key = f"{name}_LeftOut"
+    if key not in _marked:
+        picture = QtGui.QPixmap(SIZE, SIZE)
+        picture.fill(QtCore.Qt.transparent)
+        painter = QtGui.QPainter(picture)
+        painter.setRenderHint(QtGui.QPainter.Antialiasing)
+        painter.setOpacity(PALE)
+        painter.drawPixmap(0, 0, qicon(name).pixmap(SIZE, SIZE))
+        painter.setOpacity(1.0)
+        painter.setPen(QtGui.QPen(QtGui.QColor(CROSSED), STROKE))
+        painter.drawLine(STROKE, SIZE - STROKE, SIZE - STROKE, STROKE)
+        painter.end()
+        path = Path(FreeCAD.getTempPath()) / f"{key}.png"
+        if not picture.save(str(path)):
+            return icon(name)
+        _marked[key] = str(path)
+    return _marked[key]
+
+
 MEDIA: dict[str, Any] = {  # polygons in a square of 16, drawn in the colour of the window's text
     "play": [((4, 2), (13, 8), (4, 14))],
     "pause": [((4, 2), (7, 2), (7, 14), (4, 14)), ((9, 2), (12, 2), (12, 14), (9, 14))],
-    "next": [((3, 2), (10, 8), (3, 14)), ((11, 2), (13, 2), (13, 14), (11, 14))],
-    "previous": [((13, 2), (6, 8), (13, 14)), ((5, 2), (3, 2), (3, 14), (5, 14))],
+    "end": [((2, 2), (11, 8), (2, 14)), ((11, 2), (14, 2), (14, 14), (11, 14))],
+    "begin": [((14, 2), (5, 8), (14, 14)), ((5, 2), (2, 2), (2, 14), (5, 14))],
+    "next": [((2, 2), (8, 8), (2, 14)), ((9, 14), (12, 7), (15, 14))],
+    "previous": [((14, 2), (8, 8), (14, 14)), ((1, 14), (4, 7), (7, 14))],
 }
 
 

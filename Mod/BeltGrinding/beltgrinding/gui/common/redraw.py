@@ -8,6 +8,7 @@ is not drawn like that already (``Once``).
 from __future__ import annotations
 
 import traceback
+from functools import partial
 from typing import Any
 
 import FreeCAD
@@ -97,6 +98,7 @@ class Redraw(QtCore.QObject):
                     proxy.draw()
                     for legend in proxy.legends():
                         legend.beside = list(shown)
+                        legend.chosen = partial(proxy.doubleClicked, proxy.view)
                         shown.append(legend)
                 except Exception:  # one that cannot be drawn keeps none of the others from it
                     FreeCAD.Console.PrintError(traceback.format_exc())

@@ -29,6 +29,7 @@ from ..scene.playback_scene import SAME, Scene
 from ..widgets.steady import steady
 
 SPEEDS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)  # of the real time
+BUTTON = 28  # pixels of the icons of its buttons
 TICK = 40  # ms between two pictures
 PARTS = 100_000  # of the slider
 SCALE = ("ToleranceLower", "ToleranceUpper", "ColourLimit", "Bands", "Shown")  # of a Deviation
@@ -153,17 +154,23 @@ class Playback(QtGui.QDockWidget):
             made = QtGui.QToolButton()
             made.setObjectName(name)
             made.setIcon(media_icon(picture))
+            made.setIconSize(QtCore.QSize(BUTTON, BUTTON))
+            made.setAutoRaise(True)
             made.setToolTip(text)
             made.clicked.connect(lambda *_: action())
             row.addWidget(made)
             return made
 
+        text = translate("BeltGrinding", "To the begin")
+        button("begin", "begin", text, lambda: self.scrub(0.0))
         text = translate("BeltGrinding", "Previous event")
         button("previousEvent", "previous", text, lambda: self.step(-1))
         text = translate("BeltGrinding", "Play or pause")
         self.play_button = button("play", "play", text, self.toggle)
         text = translate("BeltGrinding", "Next event")
         button("nextEvent", "next", text, lambda: self.step(1))
+        text = translate("BeltGrinding", "To the end")
+        button("end", "end", text, lambda: self.scrub(scene.duration))
         self.speed = steady(QtGui.QComboBox())
         self.speed.setObjectName("speed")
         self.speed.setToolTip(translate("BeltGrinding", "Speed, as a multiple of the real time"))
@@ -179,6 +186,8 @@ class Playback(QtGui.QDockWidget):
         self.label = QtGui.QLabel()
         self.label.setObjectName("moment")
         row.addWidget(self.label)
+        body.addLayout(row)
+        row = QtGui.QHBoxLayout()
         self.moving = QtGui.QCheckBox(translate("BeltGrinding", "Show the cell as it moves"))
         self.moving.setObjectName("playbackMoves")
         self.moving.setEnabled(scene.cell.cell()["holding"] == "part_in_hand")
@@ -198,13 +207,14 @@ class Playback(QtGui.QDockWidget):
         choice.setMenu(self.chart.menu)
         choice.setPopupMode(QtGui.QToolButton.InstantPopup)
         row.addWidget(choice)
-        body.addLayout(row)
         text = translate("BeltGrinding", "Out of date: an input has changed since; simulate again.")
         self.stale = QtGui.QLabel(text)
         self.stale.setObjectName("playbackOutOfDate")
         self.stale.setStyleSheet(warning_style())
         self.stale.setVisible(simulation.OutOfDate)
-        body.addWidget(self.stale)
+        row.addWidget(self.stale)
+        row.addStretch()
+        body.addLayout(row)
         body.addWidget(self.chart, 1)
         return panel
 

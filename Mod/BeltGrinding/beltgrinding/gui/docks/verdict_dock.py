@@ -9,11 +9,11 @@ import FreeCADGui as Gui
 import numpy as np
 
 from ...base.kinds import known
-from ...objects import api, raster_path, verdict as objects
+from ...engine import InputError
+from ...objects import api, ground_by, raster_path, verdict as objects
 from ...objects.belt_machine import half_size
-from ...objects.job_data import children, face_name
+from ...objects.job_data import face_name
 from ...objects.kinds import DocumentObject, Field
-from ...objects.robot_path import RobotPath
 from ...objects.fields import forget_field
 from ..common.editing import edit
 from ..common.compat import QtCore, QtGui, translate
@@ -261,13 +261,11 @@ class VerdictDock(ObjectDock):
         if not 0 <= row < len(motions) or motions[row]["program"] is None:
             return None, None
         motion = motions[row]
-        name = self.found["programs"][motion["program"]]["name"]
-        paths = children(self._job(), RobotPath)
-        named = [path for path in paths if path.Label == name]
-        at = motion["program"]
-        if at < len(paths) and (paths[at].Label == name or not named):
-            return paths[at], motion
-        return (named[0] if named else None), motion
+        names = [program["name"] for program in self.found["programs"]]
+        try:
+            return ground_by.of_result(self._job(), names)[motion["program"]], motion
+        except InputError:  # one is gone
+            return None, motion
 
     def show_motion(self, row: int) -> None:
         """Draws the wheel at the motion's pose, and shows the pose and its line."""

@@ -9,10 +9,9 @@ import numpy as np
 
 from ...contact import single_contact as contact
 from ...engine import Cancelled, InputError
-from ...objects import job_data, job_inputs
+from ...objects import ground_by, job_inputs
 from ...objects.belt_machine import WHEELS
 from ...objects.kinds import DocumentObject
-from ...objects.robot_path import RobotPath
 from ..common.compat import QtCore, QtGui, buttons, translate
 from ..common.help_pages import helped
 from ..common.icons import qicon
@@ -50,7 +49,7 @@ class ContactPanel:
     """Shows the contact at a pose; nothing in the document changes."""
 
     def __init__(self, job: DocumentObject) -> None:
-        self.paths = job_data.children(job, RobotPath)
+        self.paths = ground_by.required(job)
         self.folder = job_inputs.scratch_folder()
         self.data = job_inputs.to_data(job, self.folder.name)
         wheel = self.data["belt_machine"].get("kind", WHEELS[0]) in WHEELS

@@ -12,6 +12,7 @@ from ...objects import first_settings, job_data, sides
 from ...objects.belt_machine import WHEELS, BeltMachine
 from ...objects.kinds import Document, DocumentObject
 from ...objects.raster_path import RasterPath, proposed, replace_proposed
+from ...objects.robot_path import RobotPath
 from ...objects.stock import Stock
 from ..common import gates
 from ..common.compat import QtCore, QtGui, translate
@@ -19,8 +20,10 @@ from ..common.figures import figure
 from ..common.kinds import Widget
 from ..common.messages import error_text
 from ..scene.face_tint import FaceTint
+from ..scene.stock_lines import StockLines
 from ..widgets.fold import Fold
 from ..widgets.form import NUMBERS, QUANTITIES, Form
+from ..widgets.active_programs import ActivePrograms
 from .finish_form import FinishForm
 from .heat_form import HeatForm
 from .law_forms import LawForms
@@ -70,7 +73,8 @@ class JobPanel(Panel):
         sampling.add("Spacing", translate("BeltGrinding", "Sample spacing"))
         self.count = QtGui.QLabel()
         self.count.setObjectName("sampleCount")
-        sampling.layout_.addRow("", self.count)
+        self.count.setWordWrap(True)
+        sampling.layout_.addRow(self.count)
         sampling.add("ToleranceLower", translate("BeltGrinding", "Lower limit"))
         sampling.add("ToleranceUpper", translate("BeltGrinding", "Upper limit"))
         sampling.add("ColourLimit", translate("BeltGrinding", "Colours end at"))
@@ -107,6 +111,8 @@ class JobPanel(Panel):
         self.gate = FaceGate()
         gates.hold(self.gate)
         self.tint = FaceTint(self.document)
+        self.stock_lines = StockLines(self.document)
+        self.stock_lines.show(obj)
         self.chosen = self._numbers()
         self.kind = self._kind()
         for form in self.form.findChildren(Form):
@@ -170,6 +176,11 @@ class JobPanel(Panel):
                 self.machine.summary,
                 not new,
             )
+        programs = job_data.children(self.obj, RobotPath)
+        if len(programs) > 1 or not all(path.Active for path in programs):
+            box = ActivePrograms(programs)
+            title = translate("BeltGrinding", "Programs of a run")
+            yield Fold("foldPrograms", title, box, box.summary)
         self.passes = self.plan_then = None
         paths = [path for path in job_data.children(self.obj, RasterPath) if proposed(path)]
         if paths and new:
@@ -444,4 +455,5 @@ class JobPanel(Panel):
     def close(self) -> None:
         gates.release(self.gate)
         self.tint.close()
+        self.stock_lines.close()
         self.obj.Proxy.proposed = None

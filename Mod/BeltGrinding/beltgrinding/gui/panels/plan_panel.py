@@ -206,11 +206,12 @@ class PlanPanel(RunPanel):
         return translate("BeltGrinding", "Planning, {}")
 
     def start(self) -> None:
-        self._commit()
         self.fold.fold(True)
         self.found = None
         self.document.recompute()
         super().start()
+        if self.runner is not None:  # else something is missing, and the step goes on
+            self._commit()
 
     def make_runner(self) -> Runner:
         for form in (self.limits, self.changes, self.rounds):

@@ -11,6 +11,7 @@ from ..common.compat import QtGui, translate
 from ..common.kinds import Json
 from ..common.messages import error_text
 from ..common.report_language import language
+from ..widgets.active_programs import active_box
 from ..widgets.form import Form
 from ..widgets.pose_walk import PoseTable, PoseWalk
 from ..widgets.program_values import ProgramValues
@@ -18,7 +19,7 @@ from ..common.editing import edit
 from .panel import Panel
 
 SHOWN_PROBLEMS = stored_facts.MOST  # more are kept in English only
-TABLE_HEIGHT = 260  # pixels
+TABLE_HEIGHT = 236  # pixels
 _open: list[ProgramPanel] = []  # the panel that is open
 
 
@@ -56,6 +57,7 @@ class ProgramPanel(Panel):
         form.add("RollDirection", translate("BeltGrinding", "Direction of travel"))
         self.overrides = form
         self.body.addWidget(form)
+        self.body.addWidget(active_box(obj, translate("BeltGrinding", "Active in runs")))
         again = QtGui.QPushButton(translate("BeltGrinding", "Read the file again"))
         again.setObjectName("reload")
         again.clicked.connect(self.reload)

@@ -17,6 +17,7 @@ from ..common.kinds import Changed, Widget
 from ..common.messages import error_text
 from ..common.report_language import language
 from ..scene.left_out import COLOURS
+from ..widgets.active_programs import active_box
 from ..widgets.form import Form
 from .panel import Panel
 
@@ -46,6 +47,7 @@ class RasterPanel(Panel):
         self.body.addWidget(self.process)
         self.posing = self._posing()
         self.body.addWidget(self.posing)
+        self.body.addWidget(active_box(obj, translate("BeltGrinding", "Active in runs")))
         self.warnings = QtGui.QListWidget()
         self.warnings.setObjectName("rasterWarnings")
         self.warnings.setWordWrap(True)

@@ -205,11 +205,10 @@ class RobotProgramPanel(RunPanel):
         return translate("BeltGrinding", "Planning, {}")
 
     def start(self) -> None:
-        commit(self.document)
         self.document.recompute()
         super().start()
-        if self.runner is None:  # something was missing
-            self._open()
+        if self.runner is not None:  # else something is missing, and the step goes on
+            commit(self.document)
 
     def make_runner(self) -> Runner:
         self._joints_typed()

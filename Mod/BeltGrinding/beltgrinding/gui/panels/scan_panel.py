@@ -9,8 +9,9 @@ from typing import Any
 
 from ...calibration import learning
 from ...engine import Cancelled, InputError
-from ...objects import deviation, ground_mesh, part_scan, shown, simulation
+from ...objects import deviation, ground_mesh, part_scan, scan_source, shown, simulation
 from ...objects.job_data import child, children
+from ...objects.job_inputs import scratch_folder
 from ...objects.kinds import DocumentObject
 from ...scan import comparison as scan, start as scan_start
 from ..common.compat import QtGui, translate
@@ -38,7 +39,15 @@ class ScanPanel(Panel):
         self.work: Background | None = None
         rows = QtGui.QFormLayout()
         rows.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)
-        self.file = self._file(rows, translate("BeltGrinding", "Scan"), "scan")
+        self.offered = scan_source.offered(job)
+        labels = [obj.Label for obj in self.offered]
+        file = translate("BeltGrinding", "a file")
+        self.source = self._choice(rows, translate("BeltGrinding", "Scan"), [file, *labels])
+        self.source.setObjectName("scanSource")
+        self.source.setToolTip(
+            translate("BeltGrinding", "a file, or a mesh, points or a shape of the document")
+        )
+        self.file = self._file(rows, translate("BeltGrinding", "File"), "scan")
         self.unit = self._choice(rows, translate("BeltGrinding", "Unit"), [u for u, _ in UNITS])
         self.unit.setObjectName("unit")
         starts = [
@@ -52,9 +61,10 @@ class ScanPanel(Panel):
         self.start.setObjectName("start")
         self.start_file = self._file(rows, translate("BeltGrinding", "Start file"), "start_file")
         self.start.currentIndexChanged.connect(self._enable)
+        self.source.currentIndexChanged.connect(self._enable)
         self.datum = QtGui.QLineEdit()
         self.datum.setObjectName("datum")
-        self.datum.setPlaceholderText(translate("BeltGrinding", "all that are not ground"))
+        self.datum.setPlaceholderText(translate("BeltGrinding", "all not ground"))
         self.datum.setToolTip(
             translate("BeltGrinding", "numbers of the faces that the scan is laid on, as 1,2,5")
         )
@@ -146,16 +156,30 @@ class ScanPanel(Panel):
         return box
 
     def _enable(self, _: object = None) -> None:
+        of_file = self._chosen() is None
+        for widget in (self.file.parentWidget(), self.unit):
+            widget.setEnabled(of_file)
         self.start_file.parentWidget().setEnabled(self.start.currentIndex() in (MATRIX, PAIRS))
         for widget in (self.datum, self.share, *self.held.values()):
             widget.setEnabled(self.start.currentIndex() != ALIGNED)
+
+    def _chosen(self) -> DocumentObject | None:
+        """The object of the document that is the scan; None for a file."""
+        at = self.source.currentIndex() - 1
+        return self.offered[at] if at >= 0 else None
+
+    def choose(self, obj: DocumentObject) -> None:
+        """Takes an object of the document for the scan, if it may be one."""
+        if obj in self.offered:
+            self.source.setCurrentIndex(1 + self.offered.index(obj))
 
     def options(self) -> dict[str, Any]:
         """What ``scan.compare`` takes, from the fields. Raises InputError."""
         start, file = self.start.currentIndex(), self.start_file.text().strip()
         if start in (MATRIX, PAIRS) and not file:
             raise InputError("gui.choose_start", "Choose the file of the start.")
-        options = {"unit_mm": UNITS[self.unit.currentIndex()][1], "aligned": start == ALIGNED}
+        unit = UNITS[self.unit.currentIndex()][1] if self._chosen() is None else 1.0
+        options = {"unit_mm": unit, "aligned": start == ALIGNED}
         if start == PRINCIPAL:
             options["start"] = "principal"
         if start == MATRIX:
@@ -170,19 +194,23 @@ class ScanPanel(Panel):
 
     def compare(self) -> None:
         """Begins; ``_done`` follows."""
-        path = self.file.text().strip()
+        path, chosen, folder = self.file.text().strip(), self._chosen(), scratch_folder()
         try:
-            if not Path(path).is_file():
+            if chosen is None and not Path(path).is_file():
                 raise InputError("gui.choose_scan", "Choose the scan's file.")
             options = self.options()
             result = part_scan.prepare(self.obj, self.job)
+            if chosen is not None:
+                path = str(scan_source.write(chosen, folder.name))
         except InputError as error:
             self.tell(error_text(error), True)
             return
-        work = SimpleNamespace(result=result)
+        name = path if chosen is None else chosen.Label
+        work = SimpleNamespace(result=result, folder=folder)  # which goes with the work
 
         def run(context: Context) -> tuple[Any, Any]:
-            return work.result, scan.compare(work.result, path, context=context, **options)
+            figures = scan.compare(work.result, path, context=context, **options)
+            return work.result, {**figures, "file": name}
 
         self._busy(Background(run, self._done), translate("BeltGrinding", "Aligning and measuring"))
 

@@ -16,6 +16,7 @@ from ..common.figures import length_text
 from ..common.messages import error_text
 from ..common.runner import Background
 from ..common.task_progress import TaskRow
+from ..scene.stock_lines import StockLines
 from ..widgets.form import Form
 from ..widgets.steady import steady
 from .panel import Panel
@@ -61,7 +62,7 @@ class StockPanel(Panel):
         rows.addRow(translate("BeltGrinding", "Start"), self.start)
         self.datum = QtGui.QLineEdit()
         self.datum.setObjectName("scanDatum")
-        self.datum.setPlaceholderText(translate("BeltGrinding", "all that are not ground"))
+        self.datum.setPlaceholderText(translate("BeltGrinding", "all not ground"))
         rows.addRow(translate("BeltGrinding", "Datum faces"), self.datum)
         self.lay = QtGui.QPushButton(translate("BeltGrinding", "Lay the scan on the design"))
         self.lay.setObjectName("layScan")
@@ -71,6 +72,7 @@ class StockPanel(Panel):
         rows.addRow(self.progress)
         self.body.addWidget(self.scan)
         self.finish()
+        self.lines = StockLines(self.document)
         self.arrange()
 
     def align(self) -> None:
@@ -114,9 +116,11 @@ class StockPanel(Panel):
         if self.work is not None:
             self.work.abandon()
             self.work = None
+        self.lines.close()
 
     def arrange(self) -> None:
-        """Shows the fields that the kind uses."""
+        """Shows the fields that the kind uses, and the stock's edges."""
+        self.lines.show(self.obj.getParentGroup())
         self.scan.setVisible(
             self.obj.Kind == "mesh" and self.obj.Source is None and bool(self.obj.File)
         )

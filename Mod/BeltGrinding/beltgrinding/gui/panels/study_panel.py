@@ -176,16 +176,16 @@ class StudyPanel(RunPanel):
         return translate("BeltGrinding", "Running, {}")
 
     def start(self) -> None:
-        self._commit()
         try:
             self._take()
         except InputError as error:
             self._arrange(False)
             self._tell(error)
-            self._open()
             return
         self.document.recompute()
         super().start()
+        if self.runner is not None:  # else something is missing, and the step goes on
+            self._commit()
 
     def make_runner(self) -> Runner:
         self.design.check()

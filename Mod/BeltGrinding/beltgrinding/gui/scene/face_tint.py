@@ -24,7 +24,12 @@ class FaceTint:
         # Nearer to the eye than the part's own triangles, which lie in the same place.
         offset = coin.SoPolygonOffset()
         offset.factor, offset.units = -2.0, -2.0
-        self.root = separator(unpickable(), material(TINT, TRANSPARENCY), offset, self.faces)
+        # At once, after the opaque part, as it comes last, and in nobody's way: sorted with the stock's shell, it would lie
+        # before that on one side of the part and behind it on the other.
+        order, depth = coin.SoTransparencyType(), coin.SoDepthBuffer()
+        order.value, depth.write = coin.SoTransparencyType.BLEND, False
+        look = material(TINT, TRANSPARENCY)
+        self.root = separator(unpickable(), order, depth, look, offset, self.faces)
         self.scenes = [
             view.getSceneGraph()
             for view in Gui.getDocument(document.Name).mdiViewsOfType("Gui::View3DInventor")

@@ -5,7 +5,8 @@ An end of the bar is an arrow where values beyond it have its colour, or may hav
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import time
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from pivy import coin
 
 from ...engine import core
 from ...objects import preferences, shown
-from ..common.compat import translate
+from ..common.compat import QtCore, QtGui, translate
 from ..common.figures import figure
 from ..common.kinds import Array
 from ..common.theme import theme
@@ -28,6 +29,7 @@ OPEN, NOT_OPEN = (True, True), (False, False)
 BORDER = 0.008  # of the view's width
 CUBE, CROSS = 0.28, 0.14  # of the view's height: FreeCAD's cube in a corner, its axes in another
 BETTER = 0.02  # of the part's points that another place must hide less, for the legend to go there
+SAME_PLACE = 8  # pixels between two clicks of a double click
 KEPT = 6  # pictures: views of other sizes, and both themes
 
 
@@ -205,7 +207,8 @@ def roughness(span: float, out_of_date: bool = False) -> Spec:
 
 class Legend:
     """A legend over the 3D views: ``node`` goes into a scene, where it is not picked and not counted by
-    fitAll. It takes a twelfth of a view's width and stands where it hides least of the part.
+    fitAll. It takes a twelfth of a view's width and stands where it hides least of the part. ``chosen()`` follows a
+    double click on it.
     """
 
     def __init__(self) -> None:
@@ -217,6 +220,10 @@ class Legend:
         self.pictures: dict[tuple[int, int, bool], tuple[tuple[int, int], bytes]] = {}
         self.drawn: tuple[int, int, bool] | None = None  # key of the picture that the image holds
         self.box: tuple[int, ...] | None = None  # left, bottom, right, top in pixels, as drawn last
+        # The same by a view's size, of what is drawn there; the last click on it: when, and where.
+        self.boxes: dict[tuple[int, int], tuple[int, ...]] = {}
+        self.click: tuple[float, tuple[int, int]] = (0.0, (0, 0))
+        self.chosen: Callable[[], object] = lambda: None  # called after a double click on it
         self.node = coin.SoType.fromName("SoSkipBoundingGroup").createInstance()
         self.node = self.node or coin.SoSeparator()
         self.node.ref()  # pivy holds none of what createInstance made: taken out of a scene, it would be gone
@@ -233,6 +240,9 @@ class Legend:
         # Looked at while views of several sizes are drawn: a change must not ask for another drawing.
         for node in (annotation, self.shift, self.image):
             node.enableNotify(False)
+        clicks = coin.SoEventCallback()
+        clicks.addEventCallback(coin.SoMouseButtonEvent.getClassTypeId(), self._clicked)
+        self.node.addChild(clicks)
         self.node.addChild(watch)
         self.node.addChild(annotation)
 
@@ -266,6 +276,7 @@ class Legend:
             self.drawn = key
         left, bottom = self._place(seen, size, width, height)
         self.box = left, bottom, left + size[0], bottom + size[1]
+        self.boxes[(width, height)] = self.box
         volume = coin.SoViewVolumeElement.get(state)
         depth = volume.getNearDist() + 0.5 * volume.getDepth()
         # Coin cuts what it projects back to whole pixels: on a border, rounding would say which.
@@ -273,6 +284,25 @@ class Legend:
         at = volume.getPlanePoint(depth, corner)
         model = coin.SoModelMatrixElement.get(state)
         self.shift.translation = model.inverse().multVecMatrix(at)
+
+    def _clicked(self, _: object, node: Any) -> None:
+        """A click into a view: the second of two on the legend chooses it. Coin tells no double clicks."""
+        event, action = node.getEvent(), node.getAction()
+        if not coin.SoMouseButtonEvent.isButtonPressEvent(event, coin.SoMouseButtonEvent.BUTTON1):
+            return
+        width, height = action.getViewportRegion().getViewportSizePixels().getValue()
+        box = self.boxes.get((width, height))
+        x, y = event.getPosition().getValue()
+        if self.spec is None or box is None:
+            return
+        if not (box[0] <= x <= box[2] and box[1] <= y <= box[3]):
+            return
+        (before, (x0, y0)), now = self.click, time.monotonic()
+        self.click = now, (x, y)
+        soon = now - before < QtGui.QApplication.doubleClickInterval() / 1000.0
+        if soon and abs(x - x0) + abs(y - y0) < SAME_PLACE:
+            self.click = 0.0, (x, y)
+            QtCore.QTimer.singleShot(0, self.chosen)  # the view is at it
 
     def _picture(self, key: tuple[int, int, bool]) -> tuple[tuple[int, int], bytes]:
         if key not in self.pictures:

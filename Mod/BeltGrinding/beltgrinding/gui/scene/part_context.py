@@ -12,7 +12,7 @@ from pivy import coin
 from ...engine import InputError
 from ...objects import job_data
 from ...objects.kinds import DocumentObject, PartShape
-from ..common.kinds import Array, Node, Surface
+from ..common.kinds import Array, Node, Rgb, Surface
 
 GREY = (0.62, 0.64, 0.67)
 EDGE = (0.2, 0.2, 0.22)
@@ -82,7 +82,7 @@ def rest_of_part(job: DocumentObject) -> Node:
     root.addChild(pick)
     for node in (hints, material, behind, coordinates, faces) if len(triangles) else ():
         root.addChild(node)
-    root.addChild(_edges(shape))
+    root.addChild(line_set(shape))
     return root
 
 
@@ -183,7 +183,7 @@ def edges_of_part(job: DocumentObject) -> Node:
     pick = coin.SoPickStyle()
     pick.style = coin.SoPickStyle.UNPICKABLE
     root.addChild(pick)
-    root.addChild(_edges(shape))
+    root.addChild(line_set(shape))
     return root
 
 
@@ -191,14 +191,14 @@ def _deflection(shape: PartShape) -> float:
     return DEFLECTION * max(shape.BoundBox.DiagonalLength, 1e-6)
 
 
-def _edges(shape: PartShape) -> Node:
+def line_set(shape: PartShape, rgb: Rgb = EDGE) -> Node:
     """The edges as thin lines: without them, faces of one brightness run into one another, and the
     coloured ones have no light."""
     root = coin.SoSeparator()
     light = coin.SoLightModel()
     light.model = coin.SoLightModel.BASE_COLOR
     colour = coin.SoBaseColor()
-    colour.rgb = EDGE
+    colour.rgb = rgb
     points, counts = _lines(shape)
     coordinates = coin.SoCoordinate3()
     coordinates.point.setValues(0, len(points), points)

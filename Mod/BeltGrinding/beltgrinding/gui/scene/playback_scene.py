@@ -9,16 +9,16 @@ from pivy import coin
 
 from ...engine import InputError
 from ...job.tolerances import colour_scale
-from ...objects import job_data, job_inputs, preferences
+from ...objects import ground_by, job_data, job_inputs, preferences
 from ...objects.belt_machine import BeltMachine
 from ...objects.deviation import Deviation
 from ...objects.ground_mesh import GroundMesh
 from ...objects.kinds import DocumentObject, ViewObject
 from ...objects.living import GONE
 from ...objects.plan import Plan
-from ...objects.robot_path import RobotPath
 from ...objects.shown import bands_of
 from ..common.compat import translate
+from ..common.editing import edit
 from ..common.kinds import Node
 from . import legend
 from .cell_view import CellView
@@ -38,8 +38,8 @@ class Scene:
         self, job: DocumentObject, simulation: DocumentObject, recording: core.Recording
     ) -> None:
         self.recording, self.simulation = recording, simulation
-        self.paths = job_inputs.tool_paths(job)
-        programs = job_data.children(job, RobotPath)
+        programs = ground_by.of_result(job, simulation.Programs)
+        self.paths = job_inputs.tool_paths(job, programs)
         self.labels = [program.Label for program in programs]
         self.lines = [path.lines() for path in self.paths]
         self.ends = np.cumsum([path.duration() for path in self.paths])
@@ -62,6 +62,8 @@ class Scene:
         self.cell.root.addChild(self.field.node)
         self.legend = legend.Legend()
         self.legend.avoid(points_of_part(job))
+        if deviation is not None:
+            self.legend.chosen = lambda: edit(deviation)
         self._show_legend()
         self.cell.root.addChild(self.legend.node)
         self.cell.root.addChild(rest_of_part(job))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import FreeCAD
+import FreeCADGui as Gui
 import numpy as np
 from pivy import coin
 
@@ -14,8 +15,9 @@ from ...objects.ground_mesh import GroundMesh
 from ...objects.job_data import children
 from ...objects.kinds import DocumentObject, ViewObject
 from ...objects.robot_path import load_program
+from ..common.chosen import activate, jobs_of
 from ..common.compat import translate
-from ..common.icons import qicon
+from ..common.icons import icon, pale_icon, qicon
 from ..common.kinds import Menu
 from ..common.redraw import Once
 from ..scene import left_out, path_arrows, stock_shell
@@ -85,6 +87,20 @@ class JobView(View):
         "BeltGrinding_ExportJob",
         "BeltGrinding_ImportResult",
     )
+
+    def own_entries(self, obj: DocumentObject, menu: Menu) -> None:
+        if len(jobs_of(obj.Document)) > 1:
+            text = translate("BeltGrinding", "Make active")
+            menu.addAction(qicon(self.ICON), text, lambda: activate(obj))
+
+    def canDropObject(self, dropped: DocumentObject) -> bool:
+        return True
+
+    def dropObject(self, view: ViewObject, dropped: DocumentObject) -> None:
+        """A mesh or points are a scan to be compared, a path of FreeCAD is followed; all else joins the group."""
+        from .dropped import drop
+
+        drop(view.Object, dropped)
 
     def canDelete(self, obj: DocumentObject) -> bool:
         """Whether FreeCAD may delete one that the job is linked to unasked: not a part that is to be ground."""
@@ -229,6 +245,25 @@ class RobotPathView(View):
         if obj.Source:
             text = translate("BeltGrinding", "Read the file again")
             menu.addAction(qicon("BeltGrinding_ReadAgain"), text, lambda: read_again(obj))
+        if obj.Active:
+            picture, text = pale_icon(self.ICON), translate("BeltGrinding", "Leave out of runs")
+        else:
+            picture, text = icon(self.ICON), translate("BeltGrinding", "Take into runs")
+        menu.addAction(Gui.getIcon(picture), text, lambda: set_active(obj, not obj.Active))
+
+    def getIcon(self) -> str:
+        view = getattr(self, "view", None)
+        left_out = view is not None and not getattr(view.Object, "Active", True)
+        return pale_icon(self.ICON) if left_out else super().getIcon()
+
+
+def set_active(obj: DocumentObject, active: bool) -> None:
+    """Takes a path into runs, or leaves it out, as one undo step."""
+    from ..common.transaction import transaction
+
+    with transaction(obj.Document, translate("BeltGrinding", "Active in runs")):
+        obj.Active = active
+        obj.Document.recompute()
 
 
 def read_again(obj: DocumentObject) -> None:

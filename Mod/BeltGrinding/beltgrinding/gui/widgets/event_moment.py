@@ -9,11 +9,11 @@ import numpy as np
 from pivy import coin
 
 from ...geometry.body_names import PART, STOCK
-from ...objects import job_data, job_inputs
+from ...objects import ground_by, job_data, job_inputs
 from ...objects.belt_machine import BeltMachine, half_size
 from ...objects.kinds import DocumentObject, Event, Point
 from ...objects.living import named
-from ...objects.robot_path import RobotPath
+from ...objects.simulation import Simulation
 from ..common import event_texts
 from ..common.compat import QtGui
 from ..common.event_texts import COLOURS
@@ -36,6 +36,7 @@ class EventMoment:
         self.cell: CellView | None = None
         self.mark: tuple[Node, list[Node]] | None = None  # the node, and the scenes that it is in
         self.tinted: list[CellView] = []
+        self.programs: list[DocumentObject] = []  # of the result that the events are of
         self.paths: list[core.ToolPath] | None = None
         self.sight = Sight(job)
 
@@ -50,7 +51,10 @@ class EventMoment:
         if job is None:
             return
         if self.paths is None:
-            self.paths = job_inputs.tool_paths(job)
+            simulation = job_data.child(job, Simulation)
+            names = [] if simulation is None else simulation.Programs
+            self.programs = ground_by.of_result(job, names)
+            self.paths = job_inputs.tool_paths(job, self.programs)
         dock = playback(job)
         if dock is not None:
             self._drop_cell()
@@ -75,7 +79,7 @@ class EventMoment:
     def _own_cell(self, job: DocumentObject) -> CellView:
         if self.cell is None:
             self.cell = CellView(job.Document, job_data.child(job, BeltMachine))
-            program = job_data.children(job, RobotPath)[0]
+            program = self.programs[0]
             self.cell.set_path(program.Proxy.arrays(program)["frames"])
         return self.cell
 

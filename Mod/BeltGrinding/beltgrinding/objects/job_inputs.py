@@ -82,12 +82,16 @@ def _paths(job: DocumentObject) -> list[DocumentObject]:
 
 
 def overrides(path: DocumentObject) -> dict[str, float]:
-    """A program's keys that replace its own feeds and forces."""
-    keys = {}
+    """A program's keys that replace its own feeds and forces, and what happens to the belt before it."""
+    keys: dict[str, float] = {}
     if path.ForceOverride.Value > 0:
         keys["force_N"] = path.ForceOverride.getValueAs("N").Value
     if path.FeedOverride.Value > 0:
         keys["feed_mm_s"] = path.FeedOverride.Value
+    if path.PauseBefore.Value > 0:
+        keys["pause_s"] = path.PauseBefore.Value
+    if path.DressBefore:
+        keys["dress"] = True
     return keys
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ..base.kinds import known
 from ..engine import InputError
 
 if TYPE_CHECKING:
@@ -53,7 +54,7 @@ def check(between: Between, wear: Wear) -> None:
 
 def stretches(job: Job, result: Result) -> tuple[Stretch, ...]:
     """The stretches of contact of a simulated job, with what is before each, and behind the last."""
-    steps = result.steps
+    steps = known(result.steps)
     duration = np.asarray(steps["duration"], dtype=float)
     begin = np.asarray(steps["time"], dtype=float) - 0.5 * duration
     done = np.asarray(steps["force"], dtype=float) * duration

@@ -153,7 +153,7 @@ def _open_job(doc: Document, data: Json, path: Path, made: list[DocumentObject])
         if "feed_mm_s" in program:
             robot.FeedOverride = program["feed_mm_s"]
         if "pause_s" in program:
-            robot.PauseBefore = f"{program['pause_s']} s"
+            robot.PauseBefore = program["pause_s"]
         if program.get("dress"):
             robot.DressBefore = True
     doc.recompute()

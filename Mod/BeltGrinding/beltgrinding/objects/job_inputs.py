@@ -88,8 +88,8 @@ def overrides(path: DocumentObject) -> dict[str, float]:
         keys["force_N"] = path.ForceOverride.getValueAs("N").Value
     if path.FeedOverride.Value > 0:
         keys["feed_mm_s"] = path.FeedOverride.Value
-    if path.PauseBefore.Value > 0:
-        keys["pause_s"] = path.PauseBefore.Value
+    if path.PauseBefore > 0:
+        keys["pause_s"] = path.PauseBefore
     if path.DressBefore:
         keys["dress"] = True
     return keys

@@ -121,7 +121,7 @@ class RobotPath(Proxy):
                 obj.setEditorMode(name, 2)
         add("Speed", "FeedOverride", "Program", "one feed for all poses; 0: as programmed")
         add("Force", "ForceOverride", "Program", "one force for all poses; 0: as programmed")
-        add("Time", "PauseBefore", "Program", "before the program, in which the belt runs free")
+        add("Float", "PauseBefore", "Program", "s before the program, in which the belt runs free")
         add("Bool", "DressBefore", "Program", "the belt is dressed before the program")
         for name, text in FRAMES:
             add("String", name, "Export", text)

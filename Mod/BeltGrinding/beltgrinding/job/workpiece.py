@@ -251,7 +251,7 @@ def _refuse_moved(stock: Stock) -> None:
         if given:
             raise InputError(
                 "job.left_moved",
-                "{key}: what an earlier run left (stock.left_by) is where it is and as thick as it is; take the key out",
+                "{key}: what an earlier run left is where it is and as thick as it is; take the key out",
                 key=f"stock.{key}",
             )
 

@@ -31,7 +31,7 @@ Grinding::Grinding(SampleBlocks& blocks, Pressing& pressing, const RemovalLaw& l
       law_(law),
       process_(process),
       recorders_(recorders),
-      now_{process.belt} {}
+      now_{.belt = process.belt, .clock = -process.pause} {}
 
 double Grinding::set_rate(const PathStep& step) {
     const Stopwatch watch(times_.removal);
@@ -97,7 +97,10 @@ double Grinding::grind(const PathStep& step, double share, ActuatedWheel& wheel)
         expect(step, part);
         for (int stage = 0; stage < ForceActuator::kStages; ++stage) {
             const double time = part * wheel.press_stage(blocks_);
-            if (!pressed()) continue;
+            if (!pressed()) {
+                rest(time);
+                continue;
+            }
             set_rate(step);
             volume += remove(time);
             deepest_ = std::max(deepest_, pressing_.approach());
@@ -123,6 +126,7 @@ double Grinding::cut_all(const PathStep& step) {
     const double volume = pressing_.map().cut(blocks_);
     now_.belt.volume += volume;
     now_.belt.time += step.duration;
+    now_.clock += step.duration;
     now_.integrated_rate += volume;
     return volume;
 }
@@ -132,8 +136,34 @@ double Grinding::holds(double left, double least) const {
     return std::clamp(kRecession * pressing_.indentation() / fastest_, std::min(least, left), left);
 }
 
+BeltState Grinding::load(double part) {
+    const Stopwatch watch(times_.removal);
+    const GapMap& map = pressing_.map();
+    const double work = kJoule * pressing_.pressing_force() * process_.belt_speed * part;
+    BeltState mean = now_.belt;
+    const auto set_rates = [&] {
+        state_.belt_wear = process_.belt_wear * process_.wear.remaining(mean);
+        rate_under(law_, pressing_.displaced_pressure(), state_, rate_, beside_);
+    };
+    mean.loading = 0.0;
+    set_rates();
+    mean.loading =
+        process_.wear.mean_loading(now_.belt.loading, work, map.volume_rate(rate_, beside_) * part);
+    set_rates();
+    return mean;
+}
+
+void Grinding::rest(double seconds) {
+    if (!(seconds > 0.0)) return;
+    if (process_.wear.loads())
+        now_.belt.loading = process_.wear.recovered(now_.belt.loading, seconds);
+    now_.clock += seconds;
+}
+
 double Grinding::remove(double part) {
     note_reach();
+    const bool loads = process_.wear.loads();
+    const BeltState belt = loads ? load(part) : now_.belt;
     recorders_.tell(&Recorder::pressed, Press{pressing_, part, state_.belt_wear});
     GapMap& map = pressing_.map();
     const ContactSolution& contact = pressing_.solution();
@@ -152,11 +182,14 @@ double Grinding::remove(double part) {
         removed = map.remove(blocks_, rate_, beside_, part, contact.approach);
     }
     recorders_.tell(&Recorder::removed,
-                    Removal{pressing_, state_, rate_, beside_, most, most_beside, part, now_.belt});
+                    Removal{pressing_, state_, rate_, beside_, most, most_beside, part, belt});
     impulse_ += contact.force * part;
-    now_.belt.work += kJoule * pressing_.pressing_force() * process_.belt_speed * part;
+    const double work = kJoule * pressing_.pressing_force() * process_.belt_speed * part;
+    now_.belt.work += work;
     now_.belt.volume += removed;
     now_.belt.time += part;
+    if (loads) now_.belt.loading = process_.wear.loaded(now_.belt.loading, work, removed);
+    now_.clock += part;
     now_.integrated_rate += map.volume_rate(rate_, beside_) * part;
     return removed;
 }

@@ -55,6 +55,15 @@ void ProcessSettings::validate() const {
     if (!is_limit(belt_wear)) {
         throw InputError("simulation.belt_wear", "the belt's wear factor must be zero or positive");
     }
+    if (!is_limit(pause)) {
+        throw InputError("simulation.pause", "the pause before the path must be zero or positive");
+    }
+    if (belt.loading > 0.0 && !wear.loads()) {
+        throw InputError("simulation.loading_without_law",
+                         "the belt comes with a loading of {loading:.3g}, but its wear has no "
+                         "loading share; set that, or the belt's loading to 0",
+                         {{"loading", belt.loading}});
+    }
 }
 
 void Resolution::validate() const {

@@ -9,7 +9,7 @@ constexpr std::array<const char*, kGrindParameters> kNames{
     "ln_coefficient",     "pressure_exponent", "speed_exponent", "feed_exponent",
     "time_exponent",      "area_exponent",     "ln_wear_scale",  "wear_rest",
     "pressure_threshold", "ln_saturation",     "wear_exponent",  "grit_exponent",
-    "cut_exponent",       "first_share",       "ln_first_ratio"};
+    "cut_exponent",       "first_share",       "ln_first_ratio", "loading_share"};
 
 MeasuredGrinds grinds_from(const py::dict& given) {
     py::dict d = copy_of(given);
@@ -25,6 +25,7 @@ MeasuredGrinds grinds_from(const py::dict& given) {
     g.relative = take(d, "relative", Eigen::ArrayXXd());
     g.grit = take(d, "grit", Eigen::ArrayXd());
     g.cut = take(d, "cut", Eigen::ArrayXd());
+    g.loading = take(d, "loading", Eigen::ArrayXd());
     g.areas = take(d, "areas", Eigen::ArrayXd());
     refuse_rest(d, "grinds");
     g.validate();
@@ -70,8 +71,8 @@ void bind_calibration(py::module_& m) {
         "grinds: dict of arrays (n,) force N, area mm2, speed mm/s, feed mm/s (0: stationary), "
         "time s, wear, spread mm2 (1: volumes; nan: depth over the area), measured, relative (n, "
         "m) "
-        "pressure over the mean on equal shares of the contact, grit and cut (share of a fresh "
-        "belt's that remains), each of which may be missing.");
+        "pressure over the mean on equal shares of the contact, grit, cut (share of a fresh "
+        "belt's that remains) and loading (mean over the grind), each of which may be missing.");
     m.def(
         "calibrate",
         [](const py::dict& grinds, const py::dict& references, const GrindVector& start,

@@ -66,6 +66,7 @@ py::dict to_dict(const SimulationResult& result) {
     belt["work"] = result.belt.work;
     belt["volume"] = result.belt.volume;
     belt["time"] = result.belt.time;
+    belt["loading"] = result.belt.loading;
     d["belt"] = belt;
     d["shifts"] = result.shifts;
     d["process_time"] = result.process_time;

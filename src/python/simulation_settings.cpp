@@ -85,6 +85,7 @@ BeltState belt_of(const Record& belt) {
     state.work = belt.get<double>("work_J");
     state.volume = belt.get<double>("removed_mm3");
     state.time = kSecondsPerHour * belt.get<double>("hours");
+    state.loading = belt.get<double>("loading");
     return state;
 }
 
@@ -180,6 +181,9 @@ BeltWear wear_from(const Record& wear) {
     p.first_share = wear.get<double>("first_share");
     p.first_scale = wear.get<double>("first_scale");
     p.exponent = wear.get<double>("exponent");
+    p.loading_share = wear.get<double>("loading_share");
+    p.loading_scale = wear.get<double>("loading_scale");
+    p.loading_recovery = wear.get<double>("loading_recovery_s");
     p.curve = curve_from(wear, "curve");
     return BeltWear(p);
 }
@@ -190,6 +194,7 @@ BeltState belt_from(const py::dict& given) {
     belt.work = take(d, "work", 0.0);
     belt.volume = take(d, "volume", 0.0);
     belt.time = take(d, "time", 0.0);
+    belt.loading = take(d, "loading", 0.0);
     refuse_rest(d, "belt");
     return belt;
 }
@@ -239,6 +244,7 @@ SimulationOptions options_from(const Record& input) {
     o.process.belt_wear = machine.get<double>("belt_wear");
     o.process.belt =
         input.has("belt") ? belt_from(input.get<py::dict>("belt")) : belt_of(machine.in("belt"));
+    o.process.pause = input.get<double>("pause_s");
     const Record law = input.in("law");
     o.process.wear = wear_from(law.in("wear"));
     o.limits.heat = kMmPerM * law.get<double>("heat_limit_MPa_m_s");

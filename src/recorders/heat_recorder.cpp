@@ -15,12 +15,12 @@ constexpr double kBefore = 0.25, kAhead = 4.0;
 }  // namespace
 
 HeatRecorder::HeatRecorder(const SampleBlocks& blocks, const HeatRequest& request,
-                           double belt_speed, double duration)
+                           double belt_speed, double pause, double duration)
     : Keeps(&PhaseTimes::heat),
       blocks_(blocks),
       request_(request),
       belt_speed_(belt_speed),
-      start_(request.part->state().time),
+      start_(request.part->state().time + pause),
       duration_(duration),
       conduction_(*request.part),
       position_(request.part->size(), 0),

@@ -15,9 +15,9 @@ namespace beltgrinding {
 /// the first and between steps the part rests.
 class HeatRecorder final : public Keeps<Conduction::Part, Recorder> {
   public:
-    /// `duration`: s, of the path. All must outlive it.
+    /// `pause`: s before the path; `duration`: s, of it. All must outlive it.
     HeatRecorder(const SampleBlocks& blocks, const HeatRequest& request, double belt_speed,
-                 double duration);
+                 double pause, double duration);
 
     std::string kind() const override;
     void pressed(const Press& press) override;

@@ -25,7 +25,7 @@ Recorders make_recorders(const SampleBlocks& blocks, const ToolPath& path, const
     const HeatRecorder* heat = nullptr;
     if (options.heat.part != nullptr && !rigid) {
         auto one = std::make_unique<HeatRecorder>(blocks, options.heat, process.belt_speed,
-                                                  path.duration());
+                                                  process.pause, path.duration());
         heat = one.get();
         all.add(std::move(one));
     }

@@ -1,11 +1,18 @@
 #include "beltgrinding/belt_wear.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "beltgrinding/error.h"
 
 namespace beltgrinding {
+namespace {
+
+constexpr double kLeastUse = 1e-12;  // of the loading's scale: less is rounding
+
+}  // namespace
 
 void BeltState::validate() const {
     for (const double value : {work, volume, time}) {
@@ -13,6 +20,10 @@ void BeltState::validate() const {
             throw InputError("wear.belt",
                              "belt: its work, volume and time must be zero or positive");
         }
+    }
+    if (!(loading >= 0.0 && loading <= 1.0)) {
+        throw InputError("wear.belt_loading", "belt: its loading is {loading:g}; give 0 to 1",
+                         {{"loading", loading}});
     }
 }
 
@@ -59,6 +70,12 @@ BeltWear::BeltWear(Parameters parameters) : parameters_(std::move(parameters)) {
                          "wear: the first stage's scale must be positive, and rest and first share "
                          "together at most 1");
     }
+    if (!share(p.loading_share) || !positive(p.loading_scale) ||
+        !std::isfinite(p.loading_recovery) || p.loading_recovery < 0.0) {
+        throw InputError("wear.loading",
+                         "wear: the loading's share must lie in [0, 1], its scale be positive and "
+                         "its recovery zero (none) or positive");
+    }
 }
 
 double BeltWear::variable(const BeltState& state) const {
@@ -66,6 +83,41 @@ double BeltWear::variable(const BeltState& state) const {
 }
 
 double BeltWear::remaining(const BeltState& state) const {
+    const double worn = this->worn(state);
+    return loads() ? worn * (1.0 - parameters_.loading_share * state.loading) : worn;
+}
+
+double BeltWear::loaded(double loading, double work, double volume) const {
+    const double use = parameters_.variable == Variable::kWork ? work : volume;
+    return loading - (1.0 - loading) * std::expm1(-use / parameters_.loading_scale);
+}
+
+double BeltWear::mean_loading(double loading, double work, double volume) const {
+    const Parameters& p = parameters_;
+    const double free = 1.0 - loading;
+    if (p.variable == Variable::kWork) {
+        const double x = work / p.loading_scale;
+        return x > kLeastUse ? 1.0 + free * std::expm1(-x) / x : loading;
+    }
+    // dV/dt = R (a + b exp(-V / scale)), the volume of an unloaded belt R t.
+    const double x = volume / p.loading_scale;
+    if (!(x > kLeastUse) || !loads()) return loading;
+    const double a = 1.0 - p.loading_share, b = p.loading_share * free;
+    double removed = 0.0;  // V / scale
+    if (a * x > 1.0) {
+        removed = a * x + std::log((a + b - b * std::exp(-a * x)) / a);
+    } else {
+        removed = std::log1p((a + b) * (a > 0.0 ? std::expm1(a * x) / a : x));
+    }
+    return std::clamp((1.0 - removed / x) / p.loading_share, loading, 1.0);
+}
+
+double BeltWear::recovered(double loading, double seconds) const {
+    const double recovery = parameters_.loading_recovery;
+    return recovery > 0.0 ? loading * std::exp(-seconds / recovery) : loading;
+}
+
+double BeltWear::worn(const BeltState& state) const {
     const Parameters& p = parameters_;
     const double w = variable(state);
     switch (p.model) {
@@ -94,7 +146,8 @@ std::string BeltWear::describe() const {
     std::ostringstream text;
     switch (p.model) {
         case Model::kNone:
-            return "no wear";
+            text << "no wear";
+            break;
         case Model::kExponential:
             text << "wear exponential over " << p.scale << unit << " to " << p.rest;
             break;
@@ -108,6 +161,10 @@ std::string BeltWear::describe() const {
         case Model::kCurve:
             text << "wear by a curve to " << p.curve.upper() << unit;
             break;
+    }
+    if (loads()) {
+        text << ", loading takes " << p.loading_share << " over " << p.loading_scale << unit;
+        if (p.loading_recovery > 0.0) text << ", given back in " << p.loading_recovery << " s";
     }
     return text.str();
 }

@@ -15,6 +15,13 @@ bool positive(const Column& column) {
 bool not_negative(const Column& column) {
     return column.allFinite() && (column >= 0.0).all();
 }
+void check_loading(const Column& loading, Eigen::Index n) {
+    if (loading.size() == 0) return;
+    if (loading.size() != n)
+        throw InputError("calibration.lengths", "calibration: columns differ in length");
+    if (!not_negative(loading) || (loading > 1.0).any())
+        throw InputError("calibration.loading", "calibration: loadings must lie in [0, 1]");
+}
 /// NaN stands for what is not known.
 bool positive_if_known(const Column& column) {
     return !(column <= 0.0).any() && !column.isInf().any();
@@ -47,6 +54,7 @@ void MeasuredGrinds::validate() const {
                              "calibration: grit and remaining cut must be positive");
         }
     }
+    check_loading(loading, n);
     if (relative.size() > 0 &&
         (relative.rows() != n || !relative.allFinite() || (relative < 0.0).any() ||
          !(relative.rowwise().sum() > 0.0).all())) {
@@ -134,6 +142,8 @@ double log_grind(const GrindVector& x, const GrindReferences& references,
     const double ln_grit =
         grinds.grit.size() > 0 ? std::log(grinds.grit[i] / references.grit) : 0.0;
     const double ln_remaining = grinds.cut.size() > 0 ? std::log(grinds.cut[i]) : 0.0;
+    const double loading = grinds.loading.size() > 0 ? grinds.loading[i] : 0.0;
+    const double ln_free = std::log1p(-x[kLoadingShare] * loading);
     const double spread = std::isnan(grinds.spread[i]) ? area : grinds.spread[i];
     if (gradient) {
         GrindVector& g = *gradient;
@@ -154,12 +164,13 @@ double log_grind(const GrindVector& x, const GrindReferences& references,
         g[kLnSaturation] = mean.by_saturation;
         g[kGritExponent] = ln_grit;
         g[kCutExponent] = ln_remaining;
+        g[kLoadingShare] = -loading * std::exp(-ln_free);
     }
     return x[kLnCoefficient] + ln_cut + std::log(references.speed) + x[kSpeedExponent] * ln_speed +
            std::log(references.pressure) + mean.ln_mean + x[kFeedExponent] * ln_feed +
            std::log(grinds.time[i]) + (x[kTimeExponent] - 1.0) * ln_time + std::log(area) +
            x[kAreaExponent] * ln_area + x[kGritExponent] * ln_grit +
-           x[kCutExponent] * ln_remaining - std::log(spread);
+           x[kCutExponent] * ln_remaining + ln_free - std::log(spread);
 }
 
 }  // namespace beltgrinding

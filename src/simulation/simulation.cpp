@@ -68,6 +68,7 @@ struct Run {
 
 void Run::step() {
     const PathStep& step = steps.step();
+    grinding.rest_until(step.time - 0.5 * step.duration);
     grinding.expect(step, step.duration);
     const PressState state = control.look(blocks, step);
     if (const double parts = steps.divisible() ? control.parts(step) : 1.0; parts > 1.0)
@@ -109,8 +110,14 @@ void Run::grind(PressState state, double removal, double most) {
     steps.done();
 }
 
-void refuse_force_of_rigid(const ContactModel& model, const ProcessSettings& process) {
-    if (model.rigid() && process.force_control) {
+void refuse_rigid(const ContactModel& model, const ProcessSettings& process) {
+    if (!model.rigid()) return;
+    if (process.wear.loads()) {
+        throw InputError("simulation.rigid_loading",
+                         "a geometric (rigid) tool cuts all that it meets, however loaded the belt "
+                         "is; set the wear's loading share to 0");
+    }
+    if (process.force_control) {
         throw InputError("simulation.rigid_force",
                          "a geometric (rigid) tool has no force; set the control to position");
     }
@@ -159,7 +166,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
     StepLog log;
     Recorders recorders = make_recorders(*blocks, path, law, options, log, model.rigid());
     const double cell = contact_cell(field, tool_envelope(process).wheel, options.resolution);
-    refuse_force_of_rigid(model, process);
+    refuse_rigid(model, process);
     Pressing pressing(process, cell, options.resolution.contact_tolerance, model, context);
     Grinding grinding(*blocks, pressing, law, process, recorders);
     const auto control = make_wheel_control(process, pressing);
@@ -187,6 +194,7 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
         run.step();
     }
     checkpoints.end();
+    grinding.rest_until(path.duration());
     finish(field, run, result);
     context.report(1.0);
     return result;

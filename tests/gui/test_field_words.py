@@ -24,7 +24,15 @@ ELSEWHERE |= {
     "planning.keep_what",
 }
 # Columns of tables, words of robots' and URDF's own files, choices of a property: what the user has to write.
-WRITTEN = {"area_mm2", "force_N", "belt_speed_m_s", "time_s", "removed_volume_mm3", "depth_mm"}
+WRITTEN = {
+    "area_mm2",
+    "force_N",
+    "belt_speed_m_s",
+    "time_s",
+    "removed_volume_mm3",
+    "depth_mm",
+    "free_s",
+}
 WRITTEN |= {"length_mm", "contact_width_mm", "remaining_cut", "base_link", "tip_link", "ref_frame"}
 WRITTEN |= {"set_tcp", "tool_dz_mm", "contact_wheel", "one_way", "part_in_hand", "vertex_index"}
 KEY_LIKE = re.compile(

@@ -371,6 +371,40 @@ def test_a_real_part_and_program_in_a_document():
 
 
 @pytest.mark.freecad
+def test_a_belt_carries_its_loading_and_programs_free_it():
+    write_pass()
+    doc = FreeCAD.newDocument("loading")
+    job = make(block(doc))
+    work = 30.0 * 20.0 * 4 / 3  # F V_b t, J
+    job.LoadingShare, job.LoadingScale, job.LoadingRecovery = 0.4, work, 10.0
+    job.DressingRest = 0.5
+    first = beltgrinding.simulate(job)
+    full = 1.0 - 1.0 / 2.71828
+    assert near(first.RemainingCut, 100.0 * (1.0 - 0.4 * full), 0.02), first.RemainingCut
+    fresh = first.RemovedVolume.Value
+    belt = beltgrinding.wear_belt(job)
+    assert near(belt.Loading, full, 0.02)
+    loaded = beltgrinding.simulate(job).RemovedVolume.Value
+    assert loaded < 0.95 * fresh
+    path = [one for one in job.Group if one.Name.startswith("RobotPath")][0]
+    path.PauseBefore, path.DressBefore = 25.0, True
+    doc.recompute()
+    assert first.OutOfDate
+    freed = beltgrinding.simulate(job).RemovedVolume.Value
+    assert loaded * 1.02 < freed < fresh
+    beltgrinding.export_job(job, "loading.json")
+    data = json.loads(Path("loading.json").read_text())
+    assert data["programs"][0]["pause_s"] == 25.0 and data["programs"][0]["dress"] is True
+    assert near(data["belt_machine"]["belt"]["loading"], full, 0.02)
+    copy = beltgrinding.open_job(FreeCAD.newDocument("loading2"), "loading.json")
+    opened = [one for one in copy.Group if one.Name.startswith("RobotPath")][0]
+    assert opened.PauseBefore == 25.0 and opened.DressBefore
+    assert near(beltgrinding.simulate(copy).RemovedVolume.Value, freed, 1e-3)
+    belt.Proxy.reset(belt)
+    assert belt.Loading == 0.0
+
+
+@pytest.mark.freecad
 def test_a_belt_carries_its_wear_between_jobs():
     write_pass()
     doc = FreeCAD.newDocument("belt")

@@ -131,7 +131,7 @@ def robot_job(folder):
 
 
 def mesh_job(folder):
-    """The part in the robot's hand, with stock from a mesh, and belts that wear."""
+    """The part in the robot's hand, with stock from a mesh, and belts that wear and load."""
     half = {"position_mm": [500, 0, 400], "quaternion_wxyz": [0, 1, 0, 0]}
     poses = []
     for x in (4, 9, 15):
@@ -156,7 +156,10 @@ def mesh_job(folder):
                 ],
             },
         },
-        "law": {"model": "local", "wear": {"model": "exponential", "scale": 5000.0}},
+        "law": {
+            "model": "local",
+            "wear": {"model": "exponential", "scale": 5000.0, "loading_share": 0.3},
+        },
         "cell": {
             "holding": "part_in_hand",
             "base_from_contact": half,

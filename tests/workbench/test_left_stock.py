@@ -75,6 +75,24 @@ def test_another_part_or_no_file_is_refused(in_turn, tmp_path):
         beltgrinding.run(job)
 
 
+@pytest.mark.parametrize(
+    "given, key",
+    [
+        ({"offset_mm": 0.2}, "stock.offset_mm"),
+        ({"placement": {"position_mm": [1.0, 0.0, 0.0]}}, "stock.placement"),
+    ],
+)
+def test_what_was_left_is_not_moved(in_turn, given, key):
+    _, _, second = in_turn
+    job = copy.deepcopy(second.job)
+    job["stock"].update(given)
+    with pytest.raises(InputError, match=key):
+        beltgrinding.run(job)
+    at_rest = {"position_mm": [0.0, 0.0, 0.0]}
+    job["stock"].update(offset_mm=0.0, placement=at_rest)
+    beltgrinding.run(job)
+
+
 def test_its_path_is_relative_to_the_job(tmp_path):
     job = {**plate_job(), "stock": {"left_by": "stage_1/result/heightfield.h5"}}
     found = jobs.validate(job, tmp_path)["stock"]["left_by"]

@@ -88,6 +88,12 @@ def test_a_stages_job_begins_with_what_is_left_and_leaves_an_allowance(tmp_path)
     assert found["inspection"]["tolerance_mm"] == pytest.approx([-0.04, 0.16])
     assert found["inspection"]["zones"][0]["tolerance_mm"] == pytest.approx([0.01, 0.08])
     assert stages.job_of(Tool(job, "", 0), Step(0, True, 0.0), None) == job
+    # Where the raw part lay, and how thick it was, is in what the first stage left.
+    moved = {**job["stock"], "offset_mm": 0.3, "placement": {"position_mm": [1.0, 0.0, 0.0]}}
+    found = stages.job_of(
+        Tool({**job, "stock": moved}, "", 0), Step(0, True, 0.0), tmp_path / "left.h5"
+    )
+    assert found["stock"] == {**job["stock"], "left_by": str(tmp_path / "left.h5")}
 
 
 def node(*shares, leave=0.0, seconds=10.0, open_zones=0):

@@ -78,9 +78,10 @@ TEST(Calibration, GradientIsThatOfDifferences) {
     g.relative.rowwise() = Eigen::Array3d(1.6, 1.0, 0.4).transpose();
     g.grit = 120.0 + 60.0 * Eigen::ArrayXd::Random(6);
     g.cut = 0.6 + 0.3 * Eigen::ArrayXd::Random(6);
+    g.loading = 0.5 + 0.4 * Eigen::ArrayXd::Random(6);
     GrindVector x = linear();
     x << -11.0, 1.4, 1.2, 0.1, 1.3, 0.2, std::log(3e5), 0.3, 0.01, std::log(0.4), kInf, -0.8, 0.3,
-        0.4, std::log(0.2);
+        0.4, std::log(0.2), 0.35;
     constexpr double kStep = 1e-6;
     for (Eigen::Index i = 0; i < 6; ++i) {
         GrindVector gradient;

@@ -110,6 +110,7 @@ class Outcome {
         }
         add(result.process_time), add(result.removed_volume), add(result.integrated_rate);
         add(result.belt.work), add(result.belt.volume), add(result.belt.time);
+        add(result.belt.loading);
         for (Eigen::Index k = 0; k < result.shifts.size(); ++k) add(result.shifts.data()[k]);
         for (const Influence* one : {&result.influence, &result.force_influence})
             add(one->first), add(one->sample), add(one->depth);

@@ -98,6 +98,24 @@ TEST(Checkpoints, BeltsThatWear) {
     expect_the_same_from_checkpoints(s);
 }
 
+TEST(Checkpoints, BeltsThatLoadAndRecover) {
+    Setting s = setting();
+    BeltWear::Parameters wear;
+    wear.loading_share = 0.4;
+    wear.loading_scale = 300.0;
+    wear.loading_recovery = 0.5;
+    s.options.process.belt.loading = 0.7;
+    s.options.process.pause = 0.2;
+    s.options.process.wear = BeltWear(wear);
+    s.options.process.dynamics = {0.02, 2e-3, 0.2, 400.0};  // slow: few time steps
+    expect_the_same_from_checkpoints(s);
+    wear.variable = BeltWear::Variable::kVolume;
+    wear.loading_scale = 1.0;
+    s.options.process.wear = BeltWear(wear);
+    s.options.process.dynamics = {};
+    expect_the_same_from_checkpoints(s);
+}
+
 TEST(Checkpoints, StepsThatAreCut) {
     Setting s = setting();
     s.coefficient = 2e-4;

@@ -17,7 +17,7 @@ import numpy as np
 from ..base.files import cannot_be_written, write_whole
 from ..base.kinds import Array, Facts, Floats, Json
 from ..engine import InputError, core
-from . import contacts, report as calibration_report
+from . import contacts, loading, report as calibration_report
 from .areas import of_unknown_areas
 from .cautions import (
     LEAST_GRINDS,
@@ -128,7 +128,10 @@ def _fitted(
     name_inputs(table, warnings)
     free, found = _determined(model, free, warnings)
     free, found = _extended(model, free, found)
+    wear = (lambda names: _with_wear(model, names)) if _worn(table) else (lambda names: names)
+    free, found = loading.fit(model, free, found, wear, warnings)
     found["between"] = _between(model, found, free) + of_unknown_areas(model, found)
+    found["between"] += found.get("between_loading", 0.0)
     name_unsure(model, found, free, warnings)
     name_pairs(found, free, warnings)
     if not found["converged"]:

@@ -35,6 +35,7 @@ EFFECT = {  # of the parameters: code and English form
     "cut_exponent": ("calibration.remaining_cut", "remaining cut"),
     "first_share": ("calibration.break_in", "the belt's break-in"),
     "ln_first_ratio": ("calibration.break_in", "the belt's break-in"),
+    "loading_share": ("calibration.the_loading", "the belt's loading"),
 }
 PRESSURE = ("pressure_exponent", "area_exponent")  # force and area
 LEAST_GRINDS = 4
@@ -212,6 +213,14 @@ def cautions(model: Model, found: Json, wear_unit: float) -> Facts:
                 "{scale:.3g} on: what it says of a fresh belt is a guess",
                 least=float(table.wear.min()),
                 scale=fresh,
+            )
+        )
+    if worn(found) and not len(table.free):
+        notes.append(
+            core.Fact(
+                "calibration.loading_unseen",
+                "the table does not say how long the belt ran free before each grind (free_s): what loads it, and a pause "
+                "gives back, counts as wear",
             )
         )
     if table.wear_kind == "number" and wear_unit == 1.0 and worn(found):

@@ -71,10 +71,20 @@ def read(
 
 
 def wear_by(job: Json) -> Callable[[float, float], float]:
-    """``remaining_cut`` of ``from_columns`` by a job's ``law`` and ``belt_machine``, validated."""
-    return lambda work, removed: laws.remaining_cut(
-        job, {"work": float(work), "volume": float(removed), "time": 0.0}
-    )
+    """``remaining_cut`` of ``from_columns`` by a job's ``law`` and ``belt_machine``, validated. It raises InputError for a
+    belt that loads: no column says how loaded it was."""
+
+    def remaining(work: float, removed: float) -> float:
+        if laws.engine_wear(job["law"]).loading_share > 0.0:
+            raise InputError(
+                "calibration.loading_unknown",
+                "{key}: the job's belt loads, and the table does not say how loaded it was; give the column remaining_cut",
+                key="law.wear.loading_share",
+            )
+        belt = {"work": float(work), "volume": float(removed), "time": 0.0}
+        return laws.remaining_cut(job, belt)
+
+    return remaining
 
 
 def _canonical(name: str) -> str | None:

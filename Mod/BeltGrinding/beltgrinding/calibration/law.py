@@ -12,6 +12,7 @@ import numpy as np
 from ..base.files import cannot_be_written, write_whole
 from ..base.kinds import Floats, Json
 from ..engine import InputError, core
+from . import loading
 from .model import DEFAULTS, INDEX, NAMES, Model
 from .table import Table, from_columns, read, with_areas
 
@@ -32,6 +33,7 @@ CARRIED = {
             "wear_exponent",
             "first_share",
             "ln_first_ratio",
+            "loading_share",
             "pressure_threshold",
             "ln_saturation",
         )
@@ -40,6 +42,7 @@ CARRIED = {
 
 ASSUMED = ("pressure_exponent", "speed_exponent")  # 1 where they were not varied
 CURVES = ("pressure_curve", "speed_curve", "feed_curve")
+LOADING_SCALE = 1e4  # J or mm3, of a law that gives none: as the job's schema has it
 LEAST_LEFT = 0.05  # of a grind's variance, once it has pulled the fit to itself
 
 
@@ -54,7 +57,8 @@ def student(freedom: float, share: float = 0.95) -> float:
 
 def freedom(model: Model, free: Sequence[str]) -> int:
     """Degrees of freedom of a fit's scatter."""
-    return max(len(model.table.measured) - len(free), 1)
+    hidden = loading.HIDDEN if model.loading else 0
+    return max(len(model.table.measured) - len(free) - hidden, 1)
 
 
 def half_width(calibration: Json, share: float = 0.95) -> float:
@@ -110,6 +114,13 @@ def law_of(
                 first_share=(1.0 - x["wear_rest"]) * x["first_share"],
                 first_scale=wear["scale"] * math.exp(x["ln_first_ratio"]),
             )
+    if model.loading:
+        wear.setdefault("variable", "volume" if kind == "volume" else "work")
+        wear.update(
+            loading_share=x["loading_share"],
+            loading_scale=model.loading[0],
+            loading_recovery_s=model.loading[1],
+        )
     assumed = [name for name in ASSUMED if name not in free]
     own = [*(name for name in free if name in CARRIED), *assumed]
     everything = [INDEX[name] for name in free]
@@ -149,6 +160,11 @@ def law_of(
                 "wear_kind": model.table.wear_kind,
                 "wear_unit_J": unit,
                 "mean_wear": unit * float(model.table.wear.mean()),
+                **(
+                    {"mean_loading": float(model.arguments["loading"].mean())}
+                    if model.loading
+                    else {}
+                ),
             },
         },
     }
@@ -200,6 +216,7 @@ def predict(
     if profile is not None and len(profile) == 1:  # fitted to mean pressures
         rows = rows._replace(relative=np.full((len(rows.force), 1), math.nan))
     model = Model(rows, references, fitted.get("areas_mm2"), profile)
+    model.load(_loading(rows, law, fitted))
     shares = fitted.get("area_shares") or [1.0 / len(model.areas)] * len(model.areas)
     mean, gradient, variance = model.predict(parameters, shares)
     if fitted:
@@ -281,6 +298,26 @@ def _with_wear(rows: Table, law: Json, fitted: Json, unit: float) -> Table:
     return rows._replace(wear=rows.wear * unit)
 
 
+def _loading(rows: Table, law: Json, fitted: Json) -> Floats | None:
+    """(n,) mean loading of the belt over each grind; the calibration's mean if not known. Raises InputError where nothing
+    says it."""
+    wear = law.get("wear", {})
+    if not wear.get("loading_share", 0.0) > 0.0:
+        return None
+    if len(rows.free) and wear.get("variable") != "volume":
+        recovery = wear.get("loading_recovery_s", 0.0) or math.inf
+        scale = wear.get("loading_scale", LOADING_SCALE)
+        return loading.means(rows, loading.Loading(scale, recovery))
+    if "mean_loading" in fitted:
+        return np.full(len(rows.force), fitted["mean_loading"])
+    raise InputError(
+        "calibration.loading_not_known",
+        "{file}: the law's belt loads, and nothing says how loaded it was; add the column free_s (for a law whose wear goes "
+        "with the work), or calibrate",
+        file=rows.path,
+    )
+
+
 def _of_law(law: Json, fitted: Json) -> tuple[Floats, dict[str, float], float]:
     """(parameters, references, joules of the wear's unit) of a law."""
     local = law.get("model", "local") == "local"
@@ -314,6 +351,7 @@ def _of_law(law: Json, fitted: Json) -> tuple[Floats, dict[str, float], float]:
             math.log(wear["scale"]),
             wear["exponent"],
         )
+    x["loading_share"] = wear.get("loading_share", 0.0)
     x["time_exponent"] = fitted.get("time_exponent", 1.0)
     x["area_exponent"] = fitted.get("area_exponent", 0.0)
     references = {

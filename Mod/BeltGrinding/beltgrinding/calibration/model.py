@@ -33,6 +33,7 @@ DEFAULTS = {
     "cut_exponent": 0.0,
     "first_share": 0.0,
     "ln_first_ratio": 0.0,
+    "loading_share": 0.0,
 }
 BOUNDS = {
     "ln_coefficient": (-80.0, 40.0),
@@ -45,6 +46,7 @@ BOUNDS = {
     "wear_exponent": (0.0, 3.0),
     "first_share": (0.02, 0.95),
     "ln_first_ratio": (math.log(0.003), math.log(0.5)),
+    "loading_share": (0.0, 0.95),
 }
 # Mean and standard deviation of what is known before: weakly, so that the grinds decide and what they
 # leave open does not run away. The published exponents of force, 0.5 to 2.4, and of speed, 1 to 1.7
@@ -60,6 +62,7 @@ PRIORS = {
     "wear_exponent": (0.0, 0.3),
     "first_share": (0.4, 0.3),
     "ln_first_ratio": (math.log(0.1), 1.0),
+    "loading_share": (0.3, 0.3),
 }
 FRESH = 0.1  # of the geometric mean of the wear: from there on the cut falls by a power
 
@@ -80,6 +83,9 @@ class Model:
         self.areas = _levels(known) if areas is None else np.asarray(areas, dtype=float)
         self.profile = _profile(table.relative) if profile is None else np.asarray(profile)
         self.arguments = _arguments(table, self.areas, self.profile)
+        self.loading: tuple[
+            float, float
+        ] | None = None  # scale J or mm3, recovery s, of a belt that loads
         self.bounds = dict(BOUNDS)
         if table.wear_kind and table.wear.max() > 0:
             top = table.wear.max()
@@ -137,6 +143,13 @@ class Model:
             mean,
             deviation,
         )
+
+    def load(self, means: Floats | None, loading: tuple[float, float] | None = None) -> None:
+        """Gives each grind the belt's mean loading over it (n,); None: none. ``loading``: by which scale and recovery."""
+        self.arguments.pop("loading", None)
+        if means is not None:
+            self.arguments["loading"] = means
+        self.loading = loading
 
     def posterior(self, found: Json, free: Sequence[str]) -> Floats:
         """Covariance of the free parameters (k, k), if the scatter is normal."""

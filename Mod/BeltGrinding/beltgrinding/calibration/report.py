@@ -144,6 +144,7 @@ SHOWN = {  # name in the report, unit
     "cut_exponent": ("cut_exponent", ""),
     "first_share": ("break_in_share", ""),
     "ln_first_ratio": ("break_in_scale_ratio", ""),
+    "loading_share": ("loading_share", ""),
 }
 
 

@@ -35,6 +35,7 @@ COLUMNS = {
     "work_J": ("belt_work_j", "initial_work_j"),
     "removed_so_far_mm3": ("belt_removed_mm3", "initial_removed_mm3"),
     "wear": ("initial_wear", "wear_number", "belt_wear"),
+    "free_s": ("belt_free_s", "pause_s", "idle_s"),
     "removed_volume_mm3": ("removed_mm3", "volume_mm3", "removed_volume"),
     "depth_mm": ("removed_depth_mm", "depth"),
     "wheel_radius_mm": (),
@@ -55,8 +56,10 @@ CONVERTED = {  # other units: canonical column, factor
     "area_cm2": ("area_mm2", 100.0),
     "removed_volume_cm3": ("removed_volume_mm3", 1000.0),
     "work_kj": ("work_J", 1000.0),
+    "free_min": ("free_s", 60.0),
+    "pause_min": ("free_s", 60.0),
 }
-MAY_BE_ZERO = ("work_J", "removed_so_far_mm3", "wear", "feed_mm_s")
+MAY_BE_ZERO = ("work_J", "removed_so_far_mm3", "wear", "feed_mm_s", "free_s")
 MAY_BE_UNKNOWN = (
     "area_mm2",
     "time_s",
@@ -89,11 +92,14 @@ class Table(NamedTuple):
     measured: Floats  # mm3 or mm; nan where only a prediction is asked for
     notes: list[Any]  # texts for the user
     nominal_area: bool = False  # whether `area` stands for areas that nobody knows
+    free: Floats = np.zeros(0)  # s that the belt ran free before each grind; (0,): not known
 
     def take(self, index: Array) -> Table:
         """The rows of ``index``, a mask or an array of places."""
         arrays = {
-            key: value[index] for key, value in self._asdict().items() if hasattr(value, "dtype")
+            key: value[index]
+            for key, value in self._asdict().items()
+            if hasattr(value, "dtype") and len(value) == len(self.force)
         }
         return self._replace(**arrays)
 
@@ -306,6 +312,7 @@ def from_columns(
         spread=spread,
         measured=figure,
         notes=notes,
+        free=c.get("free_s", np.zeros(0)),
     )
     return with_areas(table) if measured else table
 

@@ -34,6 +34,23 @@ def add(commands):
     belt.add_argument(
         "--force-max", type=float, default=0.0, metavar="N", help="greatest force, for force, both"
     )
+    belt.add_argument(
+        "--pause-s",
+        type=float,
+        default=0.0,
+        metavar="S",
+        help="for which the belt runs free between two parts, and gives back loading (default 0)",
+    )
+    belt.add_argument(
+        "--dress-every",
+        type=int,
+        default=0,
+        metavar="N",
+        help="parts after which the belt is dressed (default 0: never)",
+    )
+    belt.add_argument(
+        "--dress-s", type=float, default=0.0, metavar="S", help="time of a dressing (default 0)"
+    )
     belt.add_argument("-q", "--quiet", action="store_true", help="no progress, no summary")
     outputs.add(belt)
     figures.add(belt)
@@ -42,8 +59,8 @@ def add(commands):
 
 def _belt_plan(arguments):
     from ..engine import InputError
-    from ..job import inputs, load as jobs
-    from ..planning import belt_plan
+    from ..job import inputs, law as laws, load as jobs
+    from ..planning import belt_loading, belt_plan
 
     if arguments.follow != "feed" and arguments.force_max <= 0.0:
         raise InputError(
@@ -55,12 +72,14 @@ def _belt_plan(arguments):
         arguments, [out / name for name in belt_plan.FILES], [arguments.job, *inputs.files(job)]
     )
     costs = belt_plan.Costs(arguments.belt_cost, 60.0 * arguments.change_min, arguments.minute_cost)
+    between = belt_loading.Between(arguments.pause_s, arguments.dress_every, arguments.dress_s)
+    belt_loading.check(between, laws.engine_wear(job["law"]))
 
     def work(context):
         part, _ = belt_plan.part_of(
             job, arguments.feed_min, arguments.force_max, arguments.follow, context
         )
-        return belt_plan.plan(job, part, costs, arguments.parts)
+        return belt_plan.plan(job, part, costs, arguments.parts, context, between)
 
     found = background.run(work, arguments.quiet)
     data = belt_plan.summary(found, costs)

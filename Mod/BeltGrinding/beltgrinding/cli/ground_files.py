@@ -24,13 +24,14 @@ class Files:
 
     def write(self, found, entry=None):
         """Entries of the program's file in a job."""
+        from ..job.poses import rests
         from ..planning import apply
 
         arguments = self.arguments
         read = [arguments.part]
         apply.write(found, self.folder, read, arguments.force, entry, *self._searched)
         self.notes = _write_program(found, self.program, arguments.force, arguments.form)
-        return [{"file": self.program.name}]
+        return [{**rests(found.job["programs"][0]), "file": self.program.name}]
 
     def end(self, ground, checked):
         """Writes what is best, and the whole robot's program if one is wanted. Returns the plan."""

@@ -58,6 +58,8 @@ def _verify(arguments):
 
 def _entry(job, file):
     """A program's entry in a job: by the job's, what the file does not have by nature."""
+    from ..job.poses import rests
+
     own = next((one for one in job["programs"] if one.get("file") == str(file)), {})
     kept = {key: own[key] for key in ("values", "roll", "roll_direction") if key in own}
-    return {**kept, "file": str(file)}
+    return {**kept, **rests(own), "file": str(file)}

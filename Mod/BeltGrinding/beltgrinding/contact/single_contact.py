@@ -184,7 +184,8 @@ def at_pose(job: Json, pose: int, program: int = 1, context: Context = None) -> 
     before = [tool_paths.tool_path(job, i, warnings) for i in range(program - 1)]
     if pose > 1:
         before.append(tool_paths.tool_path(job, program - 1, warnings, pose))
-    for ground in before:
+    for i, ground in enumerate(before):
+        at = engine_input.at_program(at, job, i)
         without = replace(at, must_touch=False, shifted_laws=(), trace=False)
         if ground.grinds():
             at = replace(at, belt=core.simulate(field, ground, without, context)["belt"])

@@ -64,6 +64,7 @@ class EngineInput:
     wheel_growth: float = 0.0  # mm
     shifted_laws: tuple[Law, ...] = ()
     belt: Mapping[str, float] | None = None  # as a result has it; None: the machine's
+    pause_s: float = 0.0  # before the program, in which the belt runs free
     max_angle: float | None = None  # rad, in place of the simulation's
     must_touch: bool = True
     trace: bool = True
@@ -101,6 +102,24 @@ def of(job: Job | Mapping[str, Any]) -> EngineInput:
         wheel_growth=0.0 if rigid else wheel_growth(machine),
         shifted_laws=tuple(laws.shifted_laws(job.law)),
     )
+
+
+def at_program(given: EngineInput, job: Job | Mapping[str, Any], index: int) -> EngineInput:
+    """``given`` for a program (from 0), with what happens to the belt before it: a pause, which the engine counts, and a
+    dressing. Raises InputError for a dressing of a belt that does not load."""
+    program = typed(job).programs[index]
+    given = replace(given, pause_s=program.pause_s or 0.0)
+    if not program.dress:
+        return given
+    wear = laws.engine_wear(given.law)
+    if not wear.loading_share > 0.0:
+        raise InputError(
+            "job.dress_without_loading",
+            "{key}: the belt is dressed, and law.wear.loading_share is 0; set that share, or leave out 'dress'",
+            key=f"programs[{index}].dress",
+        )
+    belt = given.belt or laws.engine_belt(records.plain(given.machine.belt))
+    return replace(given, belt=laws.dressed(wear, belt))
 
 
 def elasticity_of(compliance: Compliance, wheel: Wheel) -> Elasticity:

@@ -37,19 +37,26 @@ SHIFTS: dict[str, Shift] = {
     "ln_saturation": (("saturation_pressure_MPa",), True, 0.0, math.inf),
 }
 WEAR_REST: Shift = (("rest",), False, 0.0, 1.0)
+LOADING: dict[str, Shift] = {"loading_share": (("loading_share",), False, 0.0, 1.0)}
 WEAR_SHIFTS: dict[str, dict[str, Shift]] = {  # by the wear's model
-    "none": {},
-    "curve": {},
-    "exponential": {"ln_wear_scale": (("scale",), True, 0.0, math.inf), "wear_rest": WEAR_REST},
+    "none": LOADING,
+    "curve": LOADING,
+    "exponential": {
+        "ln_wear_scale": (("scale",), True, 0.0, math.inf),
+        "wear_rest": WEAR_REST,
+        **LOADING,
+    },
     "two_stage": {
         "ln_wear_scale": (("scale", "first_scale"), True, 0.0, math.inf),
         "wear_rest": WEAR_REST,
         "first_share": (("first_share",), False, 0.0, 1.0),
         "ln_first_ratio": (("first_scale",), True, 0.0, math.inf),
+        **LOADING,
     },
     "power": {
         "ln_wear_scale": (("scale",), True, 0.0, math.inf),
         "wear_exponent": (("exponent",), False, 0.0, 10.0),
+        **LOADING,
     },
 }
 MOVED = {name for shifts in (SHIFTS, *WEAR_SHIFTS.values()) for name in shifts}
@@ -73,6 +80,7 @@ def engine_belt(belt: Json) -> dict[str, float]:
         "work": float(belt["work_J"]),
         "volume": float(belt["removed_mm3"]),
         "time": 3600.0 * belt["hours"],
+        "loading": float(belt.get("loading", 0.0)),
     }
 
 
@@ -82,7 +90,13 @@ def job_belt(belt: Json) -> dict[str, float]:
         "work_J": belt["work"],
         "removed_mm3": belt["volume"],
         "hours": belt["time"] / 3600.0,
+        "loading": belt.get("loading", 0.0),
     }
+
+
+def dressed(wear: Wear, belt: Json) -> dict[str, float]:
+    """The engine's belt after a dressing, which leaves a share of its loading."""
+    return {**belt, "loading": wear.dressing_rest * belt["loading"]}
 
 
 def read_belt(path: Path | str) -> dict[str, float]:
@@ -98,7 +112,7 @@ def read_belt(path: Path | str) -> dict[str, float]:
 
 def write_belt(path: Path | str, belt: Json) -> None:
     """Writes a summary's belt for the next job. Raises InputError."""
-    state = {key: belt[key] for key in ("work_J", "removed_mm3", "hours")}
+    state = {key: belt[key] for key in ("work_J", "removed_mm3", "hours", "loading")}
     try:
         write_whole(Path(path), (json.dumps(state, indent=2, allow_nan=False) + "\n").encode())
     except OSError as error:

@@ -14,6 +14,7 @@ from ..programs.force_device import ForceDevice
 from ..programs.program import ON_CURVE, share_of_zone, zone_of_share
 from .settings import Job, Program
 
+RESTS = ("pause_s", "dress")
 DEFAULT_FEED = 100.0  # mm/s, for poses and programs that set none
 PoseOf: TypeAlias = (
     "Callable[[Sequence[float]], Floats]"  # a frame (4, 4) of joint angles in degrees
@@ -25,6 +26,11 @@ def program_name(job: Job | Json, index: int) -> str:
     held = job.programs if isinstance(job, Job) else job["programs"]
     program = records.made(Program, held[index])
     return program.name or program.file or f"programs[{index}]"
+
+
+def rests(program: Json) -> dict[str, Any]:
+    """What happens to the belt before a job's program, as its keys: for a program that takes its place."""
+    return {key: program[key] for key in RESTS if key in program}
 
 
 def list_poses(arrays: Mapping[str, Array]) -> list[dict[str, Any]]:

@@ -130,6 +130,7 @@ class Belt:
     work_J: float
     removed_mm3: float
     hours: float
+    loading: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -216,6 +217,10 @@ class Wear:
     first_share: float
     first_scale: float
     exponent: float
+    loading_share: float
+    loading_scale: float
+    loading_recovery_s: float
+    dressing_rest: float
     curve: tuple[tuple[float, float], ...]
 
 
@@ -446,6 +451,8 @@ class Program:
     roll_direction: tuple[float, float, float] | None = None
     force_N: float | None = None
     feed_mm_s: float | None = None
+    pause_s: float | None = None
+    dress: bool | None = None
     unresolved: int
 
 

@@ -209,6 +209,7 @@ def make_stocked_field(
     Raises InputError, Cancelled."""
     read = typed(job)
     stock, name = read.stock, kept.name(shape)
+    _refuse_moved(stock)
     quick = stock.kind == "allowance" and stock.left_by is None
     finish = read.finish is not None and read.law.model != "geometric"
     if quick or name is None or read.sampling.spacing_mm == 0:
@@ -241,6 +242,20 @@ def _field_copy(found: tuple[core.HeightField, Facts]) -> tuple[core.HeightField
     return found[0].copy(), found[1]
 
 
+def _refuse_moved(stock: Stock) -> None:
+    """Raises InputError where what an earlier run left is to lie elsewhere, or thicker: it is on the part already."""
+    if stock.left_by is None:
+        return
+    moved = not np.array_equal(frame_of(stock.placement, "stock.placement"), np.eye(4))
+    for given, key in ((stock.offset_mm != 0.0, "offset_mm"), (moved, "placement")):
+        if given:
+            raise InputError(
+                "job.left_moved",
+                "{key}: what an earlier run left is where it is and as thick as it is; take the key out",
+                key=f"stock.{key}",
+            )
+
+
 def apply_stock(
     field: core.HeightField,
     stock: Stock | Json,
@@ -253,6 +268,7 @@ def apply_stock(
     its ``finish`` if that is wanted. ``shape``: the design, which a mesh is compared with in size. Raises InputError,
     Cancelled."""
     stock = records.made(Stock, stock)
+    _refuse_moved(stock)
     if stock.left_by is not None:
         left, _ = core.HeightField.from_hdf5(stock.left_by)
         warnings += core.apply_left(field, left, finish, known(context))["warnings"]

@@ -15,6 +15,7 @@ KEYS = (
     Key("WorkDone", "Float", "Belt", "belt_machine.belt.work_J"),
     Key("RemovedVolume", "Float", "Belt", "belt_machine.belt.removed_mm3"),
     Key("Hours", "Float", "Belt", "belt_machine.belt.hours"),
+    Key("Loading", "Float", "Belt", "belt_machine.belt.loading"),
 )
 OUTPUTS = (
     Output("RemainingCut", "Float", "Belt", "share of a fresh belt's cut, percent"),
@@ -42,7 +43,7 @@ class Belt(Proxy):
 
     def reset(self, obj: DocumentObject) -> None:
         """A new belt of the same kind."""
-        obj.WorkDone = obj.RemovedVolume = obj.Hours = 0.0
+        obj.WorkDone = obj.RemovedVolume = obj.Hours = obj.Loading = 0.0
         obj.RemainingCut, obj.Counted = 100.0, []
 
     def count(self, obj: DocumentObject, simulation: DocumentObject) -> None:
@@ -61,7 +62,8 @@ class Belt(Proxy):
                 object=obj.Label,
             )
         use = json.loads(simulation.BeltUse)
-        state = {key: value + use["during"][key] for key, value in self.state(obj).items()}
+        state = {key: value + use["during"].get(key, 0.0) for key, value in self.state(obj).items()}
+        state["loading"] = use.get("loading", 0.0)  # as the grind leaves it, whatever was before
         from_job(obj, KEYS, {"belt_machine": {"belt": state}})
         obj.RemainingCut = 100.0 * laws.remaining_cut(use["job"], law.engine_belt(state))
         obj.Counted = [*obj.Counted, run]

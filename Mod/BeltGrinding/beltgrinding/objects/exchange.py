@@ -152,6 +152,10 @@ def _open_job(doc: Document, data: Json, path: Path, made: list[DocumentObject])
             robot.ForceOverride = f"{program['force_N']} N"
         if "feed_mm_s" in program:
             robot.FeedOverride = program["feed_mm_s"]
+        if "pause_s" in program:
+            robot.PauseBefore = program["pause_s"]
+        if program.get("dress"):
+            robot.DressBefore = True
     doc.recompute()
     return job
 

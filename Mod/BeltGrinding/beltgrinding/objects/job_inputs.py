@@ -73,12 +73,16 @@ def without_programs(job: DocumentObject, folder: Path | str) -> dict[str, Any]:
 
 
 def overrides(path: DocumentObject) -> dict[str, float]:
-    """A program's keys that replace its own feeds and forces."""
-    keys = {}
+    """A program's keys that replace its own feeds and forces, and what happens to the belt before it."""
+    keys: dict[str, float] = {}
     if path.ForceOverride.Value > 0:
         keys["force_N"] = path.ForceOverride.getValueAs("N").Value
     if path.FeedOverride.Value > 0:
         keys["feed_mm_s"] = path.FeedOverride.Value
+    if path.PauseBefore > 0:
+        keys["pause_s"] = path.PauseBefore
+    if path.DressBefore:
+        keys["dress"] = True
     return keys
 
 

@@ -125,6 +125,8 @@ class RobotPath(Proxy):
             "Bool", "Active", "Program", "runs, plans and exported jobs take it; else leave it out"
         ):
             obj.Active = True
+        add("Float", "PauseBefore", "Program", "s before the program, in which the belt runs free")
+        add("Bool", "DressBefore", "Program", "the belt is dressed before the program")
         for name, text in FRAMES:
             add("String", name, "Export", text)
         if add("Link", "Machine", "Program", "the belt machine, for the cell's frames"):

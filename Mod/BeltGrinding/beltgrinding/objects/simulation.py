@@ -187,9 +187,10 @@ def _store(obj: DocumentObject, result: Result, files: result_files.Written) -> 
     obj.ElasticModel, obj.LawModel = s["models"]["compliance"], s["models"]["law"]
     obj.RemainingCut = 100.0 * s["belt"]["remaining_cut"]
     before, machine = result.job["belt_machine"]["belt"], result.job["belt_machine"]
-    during = {key: s["belt"][key] - before[key] for key in before}
+    during = {key: s["belt"][key] - before[key] for key in before if key != "loading"}
     kept = {"belt_machine": {"belt_wear": machine["belt_wear"]}, "law": result.job["law"]}
-    obj.BeltUse = json.dumps({"during": during, "job": kept}, allow_nan=False)
+    use = {"during": during, "loading": s["belt"].get("loading", 0.0), "job": kept}
+    obj.BeltUse = json.dumps(use, allow_nan=False)
     report_data.store(obj, result)
     _store_verdict(obj, result)
 

@@ -27,7 +27,8 @@ from ..job import law as laws
 from ..job import settings
 from ..job.typed import typed
 from ..simulation import run as runs
-from . import rounds, step
+from . import belt_loading, rounds, step
+from .belt_loading import Between, Stretch
 from .commands import Commands
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
 FILES = ("belt_plan.json", "parts.csv", "belt_plan.png")
 MOST_PARTS = 100_000
 NEAR = 1e-6  # of the removal, that a part may lack at a limit
-NEW = settings.Belt(work_J=0.0, removed_mm3=0.0, hours=0.0)
+NEW = settings.Belt(work_J=0.0, removed_mm3=0.0, hours=0.0, loading=0.0)
 LEAST_DRAWN, MOST_DRAWN = 20, 200  # wears, for the interval of a belt's life
 DRAWN_PARTS = 40_000  # over all of them
 MOST_OF_LIFE = 4  # lives that are counted
@@ -54,7 +55,7 @@ COLUMNS = (
     "new_belt",
 )
 
-Belt: TypeAlias = dict[str, float]  # the engine's: work, volume, time
+Belt: TypeAlias = dict[str, float]  # the engine's: work, volume, time, loading
 
 
 class Part(NamedTuple):
@@ -68,6 +69,7 @@ class Part(NamedTuple):
     alpha: float  # and with the force to this one
     slowest: float  # least factor on the feeds
     hardest: float  # greatest factor on the forces
+    stretches: tuple[Stretch, ...] = ()  # of contact; (): the belt does not load
 
 
 class Costs(NamedTuple):
@@ -101,7 +103,9 @@ def part_of(
     (no wear to follow, limits that the job itself breaks), Cancelled."""
     job = typed(job)
     machine = job.belt_machine
-    if job.law.wear.model == "none" or job.law.model in ("geometric", "hammann"):
+    wear = laws.engine_wear(job.law)
+    worn = wear.model != "none" or wear.loading_share > 0.0
+    if not worn or job.law.model in ("geometric", "hammann"):
         raise InputError(
             "planning.no_wear",
             "belt plan: {key} is {value}; give the law a wear, from measured grinds (beltgrind calibrate) or by hand",
@@ -149,13 +153,19 @@ def part_of(
             step.force_exponent(job),
             feed_min / least if follow != "force" else 1.0,
             force_max / greatest if follow != "feed" and force_max > 0.0 else 1.0,
+            belt_loading.stretches(job, result) if wear.loading_share > 0.0 else (),
         ),
         result,
     )
 
 
 def plan(
-    job: settings.Job | Json, part: Part, costs: Costs, parts: int, context: Context = None
+    job: settings.Job | Json,
+    part: Part,
+    costs: Costs,
+    parts: int,
+    context: Context = None,
+    between: Between = Between(),
 ) -> BeltPlan:
     """The ``BeltPlan`` of a batch of ``parts`` of a validated job, whose belt's use is that of the first belt. Raises
     InputError where not even a fresh belt does one part, Cancelled."""
@@ -173,8 +183,9 @@ def plan(
             "planning.costs", "belt plan: costs and times must be numbers, none below 0"
         )
     wear = laws.engine_wear(job.law)
-    fresh = _life(wear, part, NEW, costs, parts)
-    first = _life(wear, part, job.belt_machine.belt, costs, parts)
+    belt_loading.check(between, wear)
+    fresh = _life(wear, part, NEW, costs, parts, between)
+    first = _life(wear, part, job.belt_machine.belt, costs, parts, between)
     if not fresh:
         raise InputError(
             "planning.belt_too_short",
@@ -210,19 +221,19 @@ def plan(
         put_on,
         _until_worn_out(lasts, whole, changing, parts),
         len(fresh),
-        _life_95(job, part, costs, min(parts, MOST_OF_LIFE * len(fresh)), len(fresh)),
+        _life_95(job, part, costs, min(parts, MOST_OF_LIFE * len(fresh)), len(fresh), between),
     )
 
 
 def _life_95(
-    job: settings.Job, part: Part, costs: Costs, parts: int, life: int
+    job: settings.Job, part: Part, costs: Costs, parts: int, life: int, between: Between
 ) -> tuple[int, int] | None:
     """Between how many parts a fresh belt's life, ``life``, lies with 95 %, none counted beyond ``parts``, by the law's
     doubt of its wear."""
     wears = laws.drawn_wears(job.law, min(max(DRAWN_PARTS // life, LEAST_DRAWN), MOST_DRAWN))
     if not wears:
         return None
-    lives = [len(_life(wear, part, NEW, costs, parts)) for wear in wears]
+    lives = [len(_life(wear, part, NEW, costs, parts, between)) for wear in wears]
     low, high = np.quantile(lives, (0.025, 0.975), method="nearest")
     return int(low), int(high)
 
@@ -257,21 +268,30 @@ def _rows(
 
 
 def _life(
-    wear: Wear, part: Part, belt: settings.Belt, costs: Costs, parts: int
+    wear: Wear,
+    part: Part,
+    belt: settings.Belt,
+    costs: Costs,
+    parts: int,
+    between: Between = Between(),
 ) -> list[dict[str, Any]]:
     """Dicts of the parts that a belt grinds one after the other, as long as the limits let it."""
     state, rows = laws.engine_belt(records.plain(belt)), []
     nothing = {key: 0.0 for key in state}
     # What the job was simulated with: a fresh belt that wears over the part itself.
-    usual = core.belt_remaining(wear, _used(nothing, part, 1.0, 1.0, 0.5))
-    for _ in range(parts):
+    usual = core.belt_remaining(wear, _used(wear, nothing, part, 1.0, 1.0, 0.5))
+    for number in range(parts):
+        dressed = False
+        if number:
+            loading, dressed = belt_loading.rested(wear, between, state["loading"], number)
+            state = {**state, "loading": loading}
         found = _one(wear, part, state, usual)
         if found is None:
             break
         feed, force, cut, state = found
         curve = wear.curve if wear.model == "curve" else ()
         used = state["volume" if wear.variable == "volume" else "work"]
-        seconds = part.other_s + part.ground_s / feed
+        seconds = part.other_s + part.ground_s / feed + (between.dress_s if dressed else 0.0)
         rows.append(
             {
                 "cut": cut,
@@ -290,7 +310,7 @@ def _one(
 ) -> tuple[float, float, float, Belt] | None:
     """(factor on feeds, factor on forces, mean cut, the belt's state after it) of one part; None beyond the limits.
     ``usual``: the mean cut that the factors are against."""
-    cut = core.belt_remaining(wear, state)
+    cut = core.belt_remaining(wear, _used(wear, state, part, 1.0, 1.0, 0.0))
     for _ in range(INNER):  # the belt wears over the part itself: the cut in its middle counts
         if not min(cut, usual) > 0.0:
             return None
@@ -300,16 +320,22 @@ def _one(
         feed = left ** (1.0 / part.power) if part.slowest < 1.0 else 1.0
         if feed < part.slowest - NEAR or (feed == 1.0 and left < 1.0 - NEAR):
             return None
-        cut = core.belt_remaining(wear, _used(state, part, feed, force, 0.5))
-    return feed, force, cut, _used(state, part, feed, force, 1.0)
+        cut = core.belt_remaining(wear, _used(wear, state, part, feed, force, 0.5))
+    return feed, force, cut, _used(wear, state, part, feed, force, 1.0)
 
 
-def _used(state: Belt, part: Part, feed: float, force: float, share: float) -> Belt:
-    """The engine's belt after a share of a part."""
+def _used(wear: Wear, state: Belt, part: Part, feed: float, force: float, share: float) -> Belt:
+    """The engine's belt after a share of a part; with its mean loading over the part until all is done."""
+    work, loading = part.work_J * force / feed, state["loading"]
+    if part.stretches:
+        use = work if wear.variable == "work" else part.removed_mm3
+        mean, after = belt_loading.over(wear, part.stretches, loading, use, feed)
+        loading = mean if share < 1.0 else after
     return {
-        "work": state["work"] + share * part.work_J * force / feed,
+        "work": state["work"] + share * work,
         "volume": state["volume"] + share * part.removed_mm3,
         "time": state["time"] + share * part.ground_s / feed,
+        "loading": loading,
     }
 
 

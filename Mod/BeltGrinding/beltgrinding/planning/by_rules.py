@@ -99,11 +99,15 @@ Moves: TypeAlias = Callable[[Tried], Iterable["tuple[float, Move]"]]  # with wha
 
 
 def with_path(data: Json, laid: Json) -> dict[str, Any]:
-    """The job with the passes as its only program."""
-    return {
-        **data,
-        "programs": [{"name": "raster", "poses": poses.list_poses(laid), "unresolved": 0}],
+    """The job with the passes as its only program, before which the belt rests as before its first one."""
+    first = data["programs"][0]
+    laid_program = {
+        "name": "raster",
+        **poses.rests(first),
+        "poses": poses.list_poses(laid),
+        "unresolved": 0,
     }
+    return {**data, "programs": [laid_program]}
 
 
 def one_force(settings: Json) -> bool:

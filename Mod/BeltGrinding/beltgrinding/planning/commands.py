@@ -308,7 +308,7 @@ class Commands:
             kept = {name: program[name] for name in ("name", "unresolved") if name in program}
             changed = {"feeds": new[begin:end], "forces": forces[begin:end]}
             listed = poses.list_poses({**arrays, **changed})
-            programs.append({**kept, "poses": listed})
+            programs.append({**kept, **poses.rests(program), "poses": listed})
             begin = end
         return {**self.pressed(factors), "programs": programs}
 

@@ -222,7 +222,8 @@ def _goes_on(
             its = [{**own, "forces": one["forces"]} for own, one in zip(mine, its)]
         listed = [{"poses": poses.list_poses(one)} for one in its]
         kept = [{"name": one.name} if one.name else {} for one in typed(job).programs]
-        job = {**job, "programs": [{**a, **b} for a, b in zip(kept, listed)]}
+        rests = [poses.rests(one) for one in job["programs"]]
+        job = {**job, "programs": [{**a, **b, **c} for a, b, c in zip(kept, listed, rests)]}
         settings.update(force_min_N=0.0, force_max_N=0.0)
         factors = np.ones(len(factors))
     if coarse:

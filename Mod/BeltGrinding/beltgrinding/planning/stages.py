@@ -124,6 +124,10 @@ def job_of(tool: Tool, step: Step, left: Path | str | None) -> dict[str, Any]:
     given = {key: dict(tool.job[key]) for key in ("stock", "inspection")}
     if left is not None:
         given["stock"]["left_by"] = str(left)
+        given["stock"][
+            "offset_mm"
+        ] = 0.0  # the first stage's raw part had them, and it left what they made of it
+        given["stock"].pop("placement", None)
     if step.leave_mm:
         limits = given["inspection"]["tolerance_mm"]
         given["inspection"]["tolerance_mm"] = _above(limits, step.leave_mm)

@@ -13,7 +13,7 @@ from ..base.files import cannot_be_written
 from ..base.kinds import Facts, Json, known
 from ..engine import Fact, InputError
 from ..job import robot_time
-from ..job.poses import listed_poses, program_name
+from ..job.poses import listed_poses, program_name, rests
 from ..job.typed import typed
 from ..presets import robot as robots
 from ..programs.force_device import ForceDevice, of_job
@@ -100,7 +100,8 @@ def entries(
         if entry is None:
             file = home / f"passes{suffix}"
             write_made(found, number, file)
-            programs.append({"file": str(file), "name": name})
+            own = rests(found.job["programs"][number])
+            programs.append({**own, "file": str(file), "name": name})
             continue
         file = home / Path(entry["file"]).name
         made, reason = write_read(found, number, entry["file"], file, entry)

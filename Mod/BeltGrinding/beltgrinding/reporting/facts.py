@@ -9,7 +9,16 @@ from typing import TYPE_CHECKING, Any
 from ..base.kinds import Json, known
 from ..job import machine as machines
 from ..job.poses import program_name
-from ..job.settings import BeltMachine, Calibration, Compliance, ForceDynamics, Job, Law, Robot
+from ..job.settings import (
+    BeltMachine,
+    Calibration,
+    Compliance,
+    ForceDynamics,
+    Job,
+    Law,
+    Robot,
+    Wear,
+)
 from ..job.typed import typed
 
 if TYPE_CHECKING:
@@ -261,6 +270,8 @@ def law(job: Job | Json, words: Language) -> tuple[Any, list[Any]]:
     if given.model == "local":
         rows += _local(given, words)
     rows.append((words("Belt wear"), words(given.wear.model.replace("_", " "))))
+    if given.wear.loading_share > 0.0:
+        rows.append((words("Belt loading"), _loading(given.wear, words)))
     limit = given.heat_limit_MPa_m_s
     rows.append(
         (
@@ -279,6 +290,18 @@ def law(job: Job | Json, words: Language) -> tuple[Any, list[Any]]:
     rows.append((words("Calibrated"), text))
     rows.append((words("Valid range"), _range(given, words)))
     return formula, rows
+
+
+def _loading(given: Wear, words: Language) -> str:
+    text = words(
+        "takes up to {share} of the cut, within {scale}",
+        share=words.percent(given.loading_share, 0),
+        scale=f"{words.figures(given.loading_scale)} {'J' if given.variable == 'work' else 'mm³'}",
+    )
+    if given.loading_recovery_s > 0.0:
+        seconds = words.figures(given.loading_recovery_s)
+        text += "; " + words("given back within {seconds} s of running free", seconds=seconds)
+    return text
 
 
 def _calibrated(law: Law) -> bool:

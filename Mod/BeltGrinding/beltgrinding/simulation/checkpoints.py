@@ -7,6 +7,7 @@ depends on is compared here: the field, the settings and what is to be kept of t
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -35,9 +36,11 @@ class RunCheckpoints:
         recorded: bool,
         programs: int,
         wanted: bool = True,
+        between: Sequence[object] = (),
     ) -> None:
         """``settings``: what core.simulate takes for the first program, plain data; ``recorded``: the run has a
-        recording; ``programs``: how many there are; ``wanted``: else none are kept."""
+        recording; ``programs``: how many there are; ``wanted``: else none are kept; ``between``: what happens before
+        each program, plain data."""
         self._most = SHARE * kept.largest() / programs if wanted else 0.0  # bytes of a program's
         self._programs: list[core.Checkpoints] = []
         self._resumed, self._same = 0, True
@@ -45,7 +48,9 @@ class RunCheckpoints:
             return
         arrays = [np.asarray(getattr(field, name)) for name in OF_FIELD]
         left = dict(field.finish or {})  # by an earlier run
-        self._key = kept.digest(arrays, left, field.spacing, field.depth, settings, recorded)
+        self._key = kept.digest(
+            arrays, left, field.spacing, field.depth, settings, recorded, between
+        )
         self._before = kept.find(STAGE, self._key) or []
 
     def next(self) -> core.Checkpoints | None:

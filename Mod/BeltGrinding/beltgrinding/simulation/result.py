@@ -25,7 +25,7 @@ from . import convergence_record, last_door, result_folder
 
 # What summary.json has had since belts wear and robots are followed: here nothing of either is known.
 LATER = {
-    "belt": {"work_J": 0.0, "removed_mm3": 0.0, "hours": 0.0, "remaining_cut": 1.0},
+    "belt": {"work_J": 0.0, "removed_mm3": 0.0, "hours": 0.0, "loading": 0.0, "remaining_cut": 1.0},
     "robot": {},
     "clearances": [],
 }

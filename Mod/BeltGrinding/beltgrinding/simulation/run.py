@@ -180,6 +180,7 @@ def _run(
         recording is not None,
         len(paths),
         resume,
+        [(program.pause_s, program.dress) for program in job.programs],
     )
     phases.end("hash")
     found, process_time, lost, models = [], 0.0, 0.0, {}
@@ -188,7 +189,7 @@ def _run(
     for i, path in enumerate(paths):
         # Programs that miss the part are told; where all do, there is nothing to show.
         last = len(touched) == len(paths) - 1 and not any(touched)
-        given = replace(given, must_touch=last)
+        given = replace(engine_input.at_program(given, job, i), must_touch=last)
         share = 0.7 / len(paths)
         part = context.part(0.3 + i * share, 0.3 + (i + 1) * share)
         try:

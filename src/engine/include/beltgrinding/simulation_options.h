@@ -77,6 +77,7 @@ struct ProcessSettings {
     double belt_wear = 1.0;       ///< k_t of the belt as it comes, a factor on `wear`
     BeltWear wear;                ///< how k_t falls with use
     BeltState belt;               ///< what the belt has done before
+    double pause = 0.0;  ///< s before the path in which the belt runs free and the part cools
 
     /// Throws InputError naming the invalid setting.
     void validate() const;

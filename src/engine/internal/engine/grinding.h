@@ -20,6 +20,7 @@ void rate_under(const RemovalLaw& law, const DisplacedPressure& pressure, const 
 struct GrindingMemory {
     BeltState belt;
     double integrated_rate = 0.0;  // mm3
+    double clock = 0.0;  // s since the program began, up to which the belt's loading is known
 };
 
 /// The law at work under the pressed wheel: lowers the field, and counts what the belt has done.
@@ -42,6 +43,9 @@ class Grinding final : public Keeps<Latest<GrindingMemory>> {
 
     /// The same under a force control that takes time, with a wheel that moves: after its `look`.
     double grind(const PathStep& step, double share, ActuatedWheel& wheel);
+
+    /// The belt has run free since it was last in contact, until `time` s of the program.
+    void rest_until(double time) { rest(time - now_.clock); }
 
     /// mm, where the wheel stood deepest in the last step that was ground, from its programmed
     /// pose.
@@ -73,6 +77,10 @@ class Grinding final : public Keeps<Latest<GrindingMemory>> {
     /// Removes for `part` s what the law says of the wheel as it is pressed. Returns the volume,
     /// mm3.
     double remove(double part);
+    /// What the unloaded belt and the mean cut of the loading one would remove in `part` s: the
+    /// belt as it is, its loading that of the mean. Sets the rates to it.
+    BeltState load(double part);
+    void rest(double seconds);
     void note_reach() {
         if (reached_ != nullptr) reached_->add(pressing_.in_reach());
     }

@@ -47,7 +47,7 @@ struct Removal {
     const Eigen::ArrayXd& most;    ///< mm/s per cell, that was left to remove
     const Eigen::ArrayXd& most_beside;
     double duration;        ///< s
-    const BeltState& belt;  ///< at its begin
+    const BeltState& belt;  ///< at its begin, but for the loading: of the mean cut over it
 };
 
 /// A step is over.

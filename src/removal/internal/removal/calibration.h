@@ -23,6 +23,7 @@ enum GrindParameter : int {
     kCutExponent,        ///< f, of the share of a fresh belt's cut that remains; 0 likewise
     kFirstShare,    ///< of what an exponential wear takes, the share that goes first (break-in)
     kLnFirstRatio,  ///< ln of that stage's wear scale over the other's, below 0
+    kLoadingShare,  ///< of the cut, that a loaded belt lacks
     kGrindParameters,
 };
 using GrindVector = Eigen::Matrix<double, kGrindParameters, 1>;
@@ -51,9 +52,10 @@ struct MeasuredGrinds {
     Eigen::ArrayXd measured;  ///< mm3 or mm
     /// (n, m) pressure over the mean F/A on m equal shares of the contact; empty: 1 everywhere.
     Eigen::ArrayXXd relative;
-    Eigen::ArrayXd grit;   ///< number or size of the belt's grain, in one unit; empty: not known
-    Eigen::ArrayXd cut;    ///< share of a fresh belt's cut that remains; empty: not known
-    Eigen::ArrayXd areas;  ///< (k,) mm2, what an unknown area can be; empty if all are known
+    Eigen::ArrayXd grit;     ///< number or size of the belt's grain, in one unit; empty: not known
+    Eigen::ArrayXd cut;      ///< share of a fresh belt's cut that remains; empty: not known
+    Eigen::ArrayXd loading;  ///< of the belt, mean over the grind, [0, 1]; empty: 0
+    Eigen::ArrayXd areas;    ///< (k,) mm2, what an unknown area can be; empty if all are known
 
     /// Throws InputError if sizes differ, or a figure is not finite or out of range.
     void validate() const;
@@ -61,7 +63,8 @@ struct MeasuredGrinds {
 
 /// ln of the measured figure that the model says, volume = A t dh/dt with
 ///   dh/dt = K k_t(W) g_b(V_b) g_w(V_w) <g_p(p)>, <> the mean over the contact, and t, A raised to
-/// tau, 1 + delta about their references, times (grit / grit_ref)^a cut^f where these are known,
+/// tau, 1 + delta about their references, times (grit / grit_ref)^a cut^f (1 - loading_share l),
+/// grit, cut and l where these are known,
 /// for row `i` with contact area `area`; its gradient by the parameters.
 double log_grind(const GrindVector& parameters, const GrindReferences& references,
                  const MeasuredGrinds& grinds, Eigen::Index i, double area, GrindVector* gradient);

@@ -47,6 +47,7 @@ class BeltPanel(Panel):
         self.fields.add("Hours", translate("BeltGrinding", "In contact"), unit="h")
         self.fields.add("WorkDone", translate("BeltGrinding", "Work"), unit="J")
         self.fields.add("RemovedVolume", translate("BeltGrinding", "Removed"), unit="mm³")
+        self.fields.add("Loading", translate("BeltGrinding", "Loading (0 to 1)"))
         self.place.addWidget(self.fields)
         text = translate("BeltGrinding", "Remaining cut: {:.1f} % of a fresh belt's")
         self.left.setText(text.format(self.obj.RemainingCut))

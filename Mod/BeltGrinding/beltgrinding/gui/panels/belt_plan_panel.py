@@ -10,7 +10,7 @@ from ...base.kinds import known
 from ...engine import Cancelled, InputError
 from ...objects import preferences
 from ...objects.kinds import DocumentObject
-from ...planning import belt_chart, belt_plan
+from ...planning import belt_chart, belt_loading, belt_plan
 from ..common.compat import QtCore, QtGui, translate
 from ..common.kinds import Context, Done, Json, Told, Widget
 from ..common.messages import error_text
@@ -52,7 +52,9 @@ class _Runner(Runner):
             self.data, wanted["feed_min"], wanted["force_max"], wanted["follow"], context
         )
         costs = belt_plan.Costs(wanted["belt"], 60.0 * wanted["change"], wanted["minute"])
-        return belt_plan.plan(self.data, part, costs, wanted["parts"]), costs
+        between = belt_loading.Between(wanted["pause"], wanted["dress_every"], wanted["dress"])
+        found = belt_plan.plan(self.data, part, costs, wanted["parts"], context, between)
+        return found, costs
 
     def _store(self, found: Any) -> Any:
         if self.job() is None:
@@ -123,6 +125,14 @@ class BeltPlanPanel(RunPanel):
         self.force_max = self._number(
             "forceMax", translate("BeltGrinding", "Greatest force, N"), 100.0, least=1e-3
         )
+        self.pause = self._number("pause", translate("BeltGrinding", "Pause between parts, s"), 0.0)
+        self.dress_every = self._number(
+            "dressEvery",
+            translate("BeltGrinding", "Dressed every (parts; 0: never)"),
+            0,
+            decimals=0,
+        )
+        self.dress = self._number("dressTime", translate("BeltGrinding", "Dressing it, s"), 0.0)
 
     def _number(
         self,
@@ -149,9 +159,14 @@ class BeltPlanPanel(RunPanel):
 
     def _show_follow(self) -> None:
         key = self.follow.currentData()
-        for spin, shown in ((self.feed_min, key != "force"), (self.force_max, key != "feed")):
+        shows = [(self.feed_min, key != "force"), (self.force_max, key != "feed")]
+        shows += [(spin, self._loads()) for spin in (self.pause, self.dress_every, self.dress)]
+        for spin, shown in shows:
             spin.setVisible(shown)
             self.fields.labelForField(spin).setVisible(shown)
+
+    def _loads(self) -> bool:
+        return bool(self.job.LoadingShare > 0.0)
 
     def doing(self) -> str:
         return translate("BeltGrinding", "Planning, {}")
@@ -161,8 +176,9 @@ class BeltPlanPanel(RunPanel):
         for spin in self.form.findChildren(QtGui.QDoubleSpinBox):
             spin.interpretText()
             kept.SetFloat(PREFERENCE + spin.objectName(), spin.value())
-        self.parts.interpretText()
-        kept.SetInt(PREFERENCE + "parts", self.parts.value())
+        for spin in (self.parts, self.dress_every):
+            spin.interpretText()
+            kept.SetInt(PREFERENCE + spin.objectName(), spin.value())
         kept.SetString(PREFERENCE + "follow", self.follow.currentData())
         follow = self.follow.currentData()
         wanted = {
@@ -173,6 +189,9 @@ class BeltPlanPanel(RunPanel):
             "follow": follow,
             "feed_min": self.feed_min.value(),
             "force_max": self.force_max.value() if follow != "feed" else 0.0,
+            "pause": self.pause.value() if self._loads() else 0.0,
+            "dress_every": self.dress_every.value() if self._loads() else 0,
+            "dress": self.dress.value() if self._loads() else 0.0,
         }
         self.found = None
         return _Runner(self.job, wanted, self.progress, self.done)

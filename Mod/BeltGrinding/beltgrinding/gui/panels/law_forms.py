@@ -54,6 +54,12 @@ class LawForms(QtGui.QWidget):
         self.wear.add("WearFirstShare", translate("BeltGrinding", "Share that goes at first"))
         self.wear.add("WearFirstScale", translate("BeltGrinding", "falls to 1/e in"))
         self.wear.add("WearExponent", translate("BeltGrinding", "Exponent of the fall"))
+        self.wear.add("LoadingShare", translate("BeltGrinding", "Loading takes (share; 0: none)"))
+        self.wear.add("LoadingScale", translate("BeltGrinding", "loads in"))
+        self.wear.add(
+            "LoadingRecovery", translate("BeltGrinding", "recovers in (0: never)"), unit="s"
+        )
+        self.wear.add("DressingRest", translate("BeltGrinding", "Share after a dressing"))
         layout = QtGui.QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         for form in (self.law, self.wear):
@@ -79,8 +85,8 @@ class LawForms(QtGui.QWidget):
             if obj.FeedExponent != 0.0 or obj.FeedCurve:
                 rows.add("ReferenceFeed")
         self.law.show_rows(rows)
-        wear = {"WearModel"}
-        if obj.WearModel != "none":
+        wear = {"WearModel", "LoadingShare"}
+        if obj.WearModel != "none" or obj.LoadingShare > 0.0:
             wear.add("WearVariable")
         if obj.WearModel in ("exponential", "two_stage"):
             wear |= {"WearScale", "WearRest"}
@@ -88,11 +94,18 @@ class LawForms(QtGui.QWidget):
             wear |= {"WearFirstShare", "WearFirstScale"}
         if obj.WearModel == "power":
             wear |= {"WearScale", "WearExponent"}
+        if obj.LoadingShare > 0.0:
+            wear |= {"LoadingScale", "LoadingRecovery", "DressingRest"}
         self.wear.show_rows(wear)
         unit = "J" if obj.WearVariable == "work" else "mm³"
         scale = translate("BeltGrinding", "Falls to 1/e in")
         if obj.WearModel == "power":
             scale = translate("BeltGrinding", "Scale of the fall")
         first = translate("BeltGrinding", "falls to 1/e in")
-        for name, text in (("WearScale", scale), ("WearFirstScale", first)):
+        loads = translate("BeltGrinding", "loads in")
+        for name, text in (
+            ("WearScale", scale),
+            ("WearFirstScale", first),
+            ("LoadingScale", loads),
+        ):
             self.wear.rows[name][0].setText(f"{text}, {unit}")

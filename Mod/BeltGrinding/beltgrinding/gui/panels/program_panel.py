@@ -48,6 +48,8 @@ class ProgramPanel(Panel):
             form.add("Source", translate("BeltGrinding", "File"), programs_filter())
         form.add("FeedOverride", translate("BeltGrinding", "Feed (0: as programmed)"))
         form.add("ForceOverride", translate("BeltGrinding", "Force (0: as programmed)"))
+        form.add("PauseBefore", translate("BeltGrinding", "Pause before"), unit="s")
+        form.add("DressBefore", translate("BeltGrinding", "Belt dressed before"))
         rolls = {
             "hold": translate("BeltGrinding", "held along a pass"),
             "along": translate("BeltGrinding", "along the pass"),

@@ -18,7 +18,7 @@ from ..engine import InputError, core
 from ..cell.tool_path import tool_path
 from ..job import robot_time
 from ..planning import from_file, grinding, pictures, rounds as plans, wheels, written
-from ..planning.search import Search
+from ..planning.search import BUDGET_S, Search
 from ..programs.force_device import ForceDevice
 from ..programs.writers.writer import zones_written
 from . import ground_by, job_inputs, result_files, stored_facts
@@ -31,6 +31,7 @@ from .raster_path import KEYS as PASSES, RasterPath, settings_of, take
 from .robot_path import force_device, read_again, roll_of
 
 EXPORTED = "passes.src"  # as what a path is exported
+SEARCH_S = int(BUDGET_S)  # for passes where there are none yet
 PLANNING = 0.6  # of the time; the rest reads and simulates what would be written
 
 KEYS = (

@@ -80,10 +80,17 @@ def alone(function: Callable[..., Any], *arguments: Any) -> Any:
     return function(*arguments)
 
 
-def ruled(data: Json, until: float, *arguments: Any) -> tuple[Tried, list[dict[str, Any]]]:
-    """As ``by_rules.climb``, whose ``moves``, ``told``, ``context`` and ``before`` may follow; nothing new is tried after ``until``
-    of the monotonic clock."""
-    return by_rules.climb(data, *arguments, over=passed(until))
+def ruled(
+    data: Json,
+    until: float,
+    first: Move,
+    settings: Json,
+    zones: Zones | None,
+    moves: tuple[by_rules.Moves, ...] = (),
+    before: Tried | None = None,
+) -> tuple[Tried, list[dict[str, Any]]]:
+    """As ``by_rules.climb``; nothing new is tried after ``until`` of the monotonic clock."""
+    return by_rules.climb(data, first, settings, zones, moves, before=before, over=passed(until))
 
 
 def full(data: Json, until: float, tried: Tried, settings: Json, zones: Zones | None) -> Tried:
@@ -308,7 +315,7 @@ class _Run:
         calls = []
         for one in leaders:
             begun: Move = (one.change, one.machine, one.wanted)
-            options = (begun, self.settings, self.zones, moves, None, None, one)
+            options = (begun, self.settings, self.zones, moves, one)
             calls.append(self._call(ruled, self._until(RULES_UNTIL), *options))
         values = self._run(calls, RULES_UNTIL + TO_END, (0.5, 0.7))
         climbed = [value[0] for value in values if value is not None]

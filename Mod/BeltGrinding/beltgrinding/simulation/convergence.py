@@ -68,6 +68,7 @@ def converge(job: Json, context: Context = None) -> Result:
         check_faces(job, shape)
         job, _ = spacing.settled(job, shape, [], context.part(0.0, 0.0))
     whole, so_far = sum(COST.values()) + 2.0, 0.0
+    inspection = job["inspection"]
     levels: dict[str, dict[str, Any] | None] = {}
     heights: dict[str, Floats] = {}
     result: Result | None = None
@@ -99,15 +100,15 @@ def converge(job: Json, context: Context = None) -> Result:
     answer = {
         "job_sha256": digest(job),
         "ratio": RATIO,
-        "tolerance_mm": list(job["inspection"]["tolerance_mm"]),
+        "tolerance_mm": list(inspection["tolerance_mm"]),
         "band_share": BAND_SHARE,
         "levels": {name: _settings(job, name, levels[name]) for name in LEVELS},
         "quantities": _quantities(levels),
-        "samples": _of_samples(result, heights),
+        "samples": _of_samples(result, heights, limits_digest(inspection)),
         "settings": None,
         "notes": notes,
     }
-    answer = assessed(answer, job["inspection"])
+    answer = assessed(answer, inspection)
     if not answer["fine_enough"]:
         context.report(so_far / whole)
         rest = context.part(so_far / whole, 1.0)
@@ -231,27 +232,27 @@ def errors(coarse: Floats | None, given: Floats, fine: Floats | None) -> Floats 
     return np.where(shrinks > 1.0, settled, spread)
 
 
-def _of_samples(result: Result, heights: Mapping[str, Floats]) -> dict[str, Any] | None:
+def _of_samples(
+    result: Result, heights: Mapping[str, Floats], limits: str
+) -> dict[str, Any] | None:
     """The errors of the heights over the area, and of how much of it they leave open whether it is in tolerance."""
-    error = errors(heights.get("coarse"), heights["given"], heights.get("fine"))
-    if error is None:
+    found = errors(heights.get("coarse"), heights["given"], heights.get("fine"))
+    if found is None:
         return None
     field = result.field
     seen = (np.asarray(field.flags) & core.MISSED) == 0
     height, areas = heights["given"][seen], np.asarray(field.areas, dtype=float)[seen]
-    error = error[seen]
+    error: Floats = found[seen]
     lower, upper = (limit[seen] for limit in verdicts.limits(result.job, field))
     nearest = np.minimum(abs(height - lower), abs(height - upper))
     order = np.argsort(error)
     summed = np.cumsum(areas[order]) / areas.sum()
-    found = {
-        name: float(error[order][min(np.searchsorted(summed, share), len(error) - 1)])
-        for name, share in OF_AREA.items()
-    }
+    last = np.minimum(np.searchsorted(summed, list(OF_AREA.values())), len(error) - 1)
+    below = dict(zip(OF_AREA, error[order][last].tolist()))
     return {
-        **found,
+        **below,
         "undecided_share": float(areas[nearest <= error].sum() / areas.sum()),
-        "limits_sha256": limits_digest(result.job["inspection"]),
+        "limits_sha256": limits,
     }
 
 

@@ -7,7 +7,6 @@ import FreeCADGui as Gui
 from ...objects import api, deviation, plan, study
 from ...objects.job_data import child
 from ...objects.kinds import DocumentObject
-from ...planning.search import BUDGET_S
 from ..common.compat import translate
 from ..common.transaction import commit
 from ..common.task_panel import show_panel
@@ -54,7 +53,7 @@ def grind_faces() -> None:
 
     def passes() -> DocumentObject:
         plan.passes_of(job)
-        return api.make_plan(job, compute=False, LayPasses=True, SearchSeconds=int(BUDGET_S))
+        return api.make_plan(job, compute=False, LayPasses=True, SearchSeconds=plan.SEARCH_S)
 
     def show_plan(obj: DocumentObject) -> None:
         Gui.Selection.clearSelection()  # its colour would hide those of the plan

@@ -24,8 +24,8 @@ def make_plan(
     job: DocumentObject, compute: bool = True, context: Context = None, **properties: Any
 ) -> DocumentObject:
     """Plans the feeds (and, where ``ForceMin`` or ``ForceMax`` is set, the forces) with which the job keeps its
-    tolerance, with ``LayPasses`` the passes, too, and keeps them in its Plan object, which it returns; ``apply_plan``
-    puts them into the paths.
+    tolerance, with ``LayPasses`` the passes, too (searched for ``SearchSeconds`` on all cores, 0: by rules alone), and
+    keeps them in its Plan object, which it returns; ``apply_plan`` puts them into the paths.
     ``compute=False`` only makes the object. ``properties``: settings (docs/planning-settings.md) by the names of the
     properties. Raises InputError, Cancelled.
     """

@@ -43,14 +43,10 @@ def blade_document(out):
 
 
 @pytest.mark.slow
-def test_the_picture_shows_both_ramps(demo):
+def test_the_picture_shows_both_ramps(freecad, demo):
     brown, blue = coloured(demo / "deviation.png")
     assert brown > 25000 and blue > 12000
     pictures.keep("blade-deviation", (demo / "deviation.png").read_bytes())
-
-
-@pytest.mark.slow  # the picture is made by the test before
-def test_the_picture_is_the_manuals(freecad, demo):
     pictures.check(freecad.call(release), ["blade-deviation"])
 
 

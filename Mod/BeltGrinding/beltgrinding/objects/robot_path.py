@@ -125,7 +125,12 @@ class RobotPath(Proxy):
             "Bool", "Active", "Program", "runs, plans and exported jobs take it; else leave it out"
         ):
             obj.Active = True
-        add("Float", "PauseBefore", "Program", "s before the program, in which the belt runs free")
+        add(
+            "Precision",
+            "PauseBefore",
+            "Program",
+            "s before the program, in which the belt runs free",
+        )
         add("Bool", "DressBefore", "Program", "the belt is dressed before the program")
         for name, text in FRAMES:
             add("String", name, "Export", text)

@@ -297,6 +297,16 @@ class _Maker:
     def inspection_faces(self):
         return sorted(self.dice.sample(self.faces, 1)) if self.faces else []
 
+    def mend_loading(self, made):
+        """A rigid tool does not load, and what does not load is neither loaded nor dressed."""
+        law = made.get("law", {})
+        if law.get("model") == "geometric":
+            law.get("wear", {}).pop("loading_share", None)
+        if not law.get("wear", {}).get("loading_share"):
+            made["belt_machine"].get("belt", {}).pop("loading", None)
+            for program in made.get("programs", []):
+                program.pop("dress", None)
+
     def mend(self, made):
         """Gives keys what those beside them need."""
         dice = self.dice
@@ -330,7 +340,11 @@ class _Maker:
             self.platen_length(machine)
         rim = machine.setdefault("compliance", {})
         rim["rim_thickness_mm"] = wheel["radius_mm"] * dice.uniform(0.1, 0.5)
+        self.mend_loading(made)
         stock = made.get("stock", {})
+        if "left_by" in stock:
+            for name in ("offset_mm", "placement"):
+                stock.pop(name, None)
         for name in ("file", "brep"):
             if stock.get("kind", "allowance") == "allowance" or name in stock:
                 stock.pop(name, None)

@@ -56,6 +56,9 @@ class _Maker:
         made["design"] = self.design()
         self.mend(made)
         made["programs"] = [self.program(made) for _ in range(dice.choice((1, 1, 1, 2)))]
+        if not made.get("law", {}).get("wear", {}).get("loading_share"):
+            for program in made["programs"]:
+                program.pop("dress", None)
         return made
 
     def value(self, rule, way):
@@ -298,14 +301,12 @@ class _Maker:
         return sorted(self.dice.sample(self.faces, 1)) if self.faces else []
 
     def mend_loading(self, made):
-        """A rigid tool does not load, and what does not load is neither loaded nor dressed."""
+        """A rigid tool does not load, and what does not load is not loaded."""
         law = made.get("law", {})
         if law.get("model") == "geometric":
             law.get("wear", {}).pop("loading_share", None)
         if not law.get("wear", {}).get("loading_share"):
             made["belt_machine"].get("belt", {}).pop("loading", None)
-            for program in made.get("programs", []):
-                program.pop("dress", None)
 
     def mend(self, made):
         """Gives keys what those beside them need."""

@@ -127,6 +127,16 @@ def test_errors_of_samples_are_those_of_figures():
     assert convergence.errors(None, levels[1], None) is None
 
 
+def test_a_level_of_other_samples_gives_no_errors(monkeypatch):
+    def elsewhere(*_):
+        raise InputError("stock: 9 of 10 samples lie where the earlier run ground nothing")
+
+    monkeypatch.setattr(core, "apply_left", elsewhere)
+    answer = convergence.converge(jobs.validate(plate_job())).convergence
+    assert answer["samples"] is None and answer["quantities"]
+    jsonschema.validate(answer, schemas.schema("convergence"))
+
+
 def test_errors_of_samples_cover_the_truth(converged):
     told = converged.convergence["samples"]
     assert 0.0 < told["p50_mm"] < told["p95_mm"] < told["p99_mm"] < told["max_mm"]

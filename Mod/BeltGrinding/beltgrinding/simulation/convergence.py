@@ -93,7 +93,10 @@ def converge(job: Json, context: Context = None) -> Result:
             levels[level] = _level(found, time.perf_counter() - start)
             result = found if level == "given" else result
             assert result is not None
-            heights[level] = _heights_at(result.field, found.field)
+            try:
+                heights[level] = _heights_at(result.field, found.field, part)
+            except InputError:  # its samples lie elsewhere: no errors by this level
+                pass
         so_far = end
         found = None  # a fine field is large
     assert result is not None
@@ -205,13 +208,17 @@ def estimate(coarse: float | None, given: float, fine: float | None) -> dict[str
     return {"behaviour": "monotonic", "order": order, "error": error}
 
 
-def _heights_at(field: core.HeightField, other: core.HeightField) -> Floats:
-    """(samples,) mm that another field of the same design has at the samples of ``field``."""
-    if other is field:
-        return np.array(field.height, dtype=float)
-    at = field.copy()
-    core.apply_left(at, other, False, core.RunContext())
-    return np.array(at.height, dtype=float)
+def _heights_at(
+    field: core.HeightField, other: core.HeightField, context: core.RunContext
+) -> Floats:
+    """(samples,) mm that another field of the same design has at the samples of ``field``, NaN where it has none. Raises
+    InputError where it hardly has any, Cancelled."""
+    at = field
+    if other is not field:
+        at = field.copy()
+        core.apply_left(at, other, False, context)
+    missed = (np.asarray(at.flags) & core.MISSED) != 0
+    return np.where(missed, np.nan, np.asarray(at.height, dtype=float))
 
 
 def errors(coarse: Floats | None, given: Floats, fine: Floats | None) -> Floats | None:
@@ -240,7 +247,9 @@ def _of_samples(
     if found is None:
         return None
     field = result.field
-    seen = (np.asarray(field.flags) & core.MISSED) == 0
+    seen = np.isfinite(found)
+    if not seen.any():
+        return None
     height, areas = heights["given"][seen], np.asarray(field.areas, dtype=float)[seen]
     error: Floats = found[seen]
     lower, upper = (limit[seen] for limit in verdicts.limits(result.job, field))

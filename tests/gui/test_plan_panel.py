@@ -138,19 +138,27 @@ def test_a_plan_that_comes_during_a_drag_ends_it():
     chart.deleteLater()
 
 
+def with_block(height, angle):
+    """A document with a block whose first face is round."""
+    whole_screen()
+    start()
+    doc = FreeCAD.newDocument("work")
+    doc.UndoMode = 1
+    part = doc.addObject("Part::Feature", "Block")
+    part.Shape = Part.makeCylinder(
+        80, height, FreeCAD.Vector(0, 0, 0), FreeCAD.Vector(0, 0, 1), angle
+    )
+    doc.recompute()
+    return doc
+
+
 def shown(name):
     return bool(visible(QtGui.QWidget, name))
 
 
 @pytest.mark.slow
 def test_faces_are_ground_from_nothing_by_one_button():
-    whole_screen()
-    start()
-    doc = FreeCAD.newDocument("work")
-    doc.UndoMode = 1
-    part = doc.addObject("Part::Feature", "Block")
-    part.Shape = Part.makeCylinder(80, 30, FreeCAD.Vector(0, 0, 0), FreeCAD.Vector(0, 0, 1), 40)
-    doc.recompute()
+    doc = with_block(30, 40)
     Gui.activeDocument().activeView().viewIsometric()
     Gui.SendMsgToActiveView("ViewFit")
     Gui.Selection.addSelection(doc.Name, "Block", "Face1")
@@ -198,13 +206,7 @@ def test_faces_are_ground_from_nothing_by_one_button():
 
 @pytest.mark.slow
 def test_a_search_can_be_ended_and_tells_what_the_wheel_gets_to():
-    whole_screen()
-    start()
-    doc = FreeCAD.newDocument("work")
-    doc.UndoMode = 1
-    part = doc.addObject("Part::Feature", "Block")
-    part.Shape = Part.makeCylinder(80, 12, FreeCAD.Vector(0, 0, 0), FreeCAD.Vector(0, 0, 1), 15)
-    doc.recompute()
+    doc = with_block(12, 15)
     Gui.Selection.addSelection(doc.Name, "Block", "Face1")
     settle()
     menu("Grind these faces...")

@@ -135,6 +135,6 @@ def tell(arguments, found):
     for one in told:
         name = sentence(series.name(one["wheel"]), arguments.messages.language)
         print_text(
-            f"  {name}: {100 * one['gain']:+.1f} points in tolerance by coarse plans, gets to "
+            f"  {name}: {100 * one['gain']:+.1f} points in tolerance by rough plans, gets to "
             f"{100 * one['reachable']:.1f} %"
         )

@@ -41,10 +41,8 @@ MOST_REPEATS = 20
 BORDER_FORCE = 0.15  # of the force, at borders
 LEAST_FORCE, FORCES = 0.02, 40  # of the force that is set by hand; so many are looked at
 FORCE = "force"  # the change of a force that is set by hand
-GENTLED, FAR_OFF = (
-    2,
-    0.05,
-)  # so often for a gain of that share of the area, before passes are compared with others
+GENTLED = 2  # times that such a force is lowered, before passes are compared with others
+FAR_OFF = 0.05  # of the area: gain from which on it is
 MOST_OF = 0.9  # of the area that is not done at the least feed: the repeats are for it
 
 # mm (poses,) of the zones of a program as its file will have them; -1: the job's default.

@@ -64,7 +64,9 @@ def grind(
     data = rounds.settled(data, context)
     part = context.part(0.0, SEARCHED)
     found = searches.find(data, first, settings, search, zones, told, stop, part)
-    left = {**settings, "rounds": min(settings["rounds"], POLISHED)}
+    left = settings  # whose rounds are also those of a shortest time
+    if settings["goal"] != "time":
+        left = {**settings, "rounds": min(settings["rounds"], POLISHED)}
     rest = context.part(SEARCHED, 1.0)
     ground = _planned(data, found.best, left, rest, told, zones, found.rows)
     plan = ground.plan._replace(

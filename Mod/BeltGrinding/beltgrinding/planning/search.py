@@ -1,4 +1,4 @@
-"""The search for wheel, direction of the passes and belt angle: first by what the geometry says, then by coarse plans of the
+"""The search for wheel, direction of the passes and belt angle: first by what the geometry says, then by rough plans of the
 most promising, then by rules from the best of those, then by full plans of the best three.
 
 Candidates run side by side, on processes of one thread each. What is found depends on how many were tried, never on how many
@@ -26,9 +26,9 @@ from .candidates import Seen, candidates, of_further
 from .moves import Moves
 
 BUDGET_S = 120.0
-UNTIL_IT_PAYS = float("inf")  # s: as long as a generation of coarse plans brings GAIN
+UNTIL_IT_PAYS = float("inf")  # s: as long as a generation of rough plans brings GAIN
 OWN_ANGLES, OTHER_ANGLES = (0.0, 90.0, 45.0, 135.0), (0.0, 90.0)  # degrees, of the belt
-FIRST = 16  # coarse plans of a generation
+FIRST = 16  # rough plans of a generation
 LEADERS = 4  # that rules go on from
 FINALS = 3  # full plans
 FAR_BEHIND = 0.1  # of the area: passes so far behind get no full plan
@@ -119,7 +119,7 @@ def find(
     context: Context = None,
 ) -> Found:
     """Searches for a job, validated and in its time. ``first``: validated settings of the raster; the rules begin with them in any
-    case, so that nothing worse is found than they find; ``settings``: of the plan, validated; ``told(row)``: as ``Tried.row``;
+    case, and go on as long as the budget lets them; ``settings``: of the plan, validated; ``told(row)``: as ``Tried.row``;
     ``zones``: must be picklable; ``stop()``: whether the best so far is enough. Raises InputError, Cancelled.
     """
     run = _Run(data, first, settings, search, zones, told, stop, context or core.RunContext())
@@ -264,7 +264,7 @@ class _Run:
         return known(seen[0]), others, further
 
     def _coarse(self, start: Move, queue: Sequence[Move]) -> tuple[Tried | None, list[Tried]]:
-        """(what the rules find from the start, coarse plans of candidates, the best first)."""
+        """(what the rules find from the start, rough plans of candidates, the best first)."""
         until = self._until(COARSE_UNTIL)
         calls = [self._call(ruled, until, start, self.settings, self.zones)]
         default: Tried | None = None

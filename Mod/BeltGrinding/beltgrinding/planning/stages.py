@@ -1,4 +1,4 @@
-"""Several wheels and belts, one after the other: which stages are worth their tool changes, by coarse plans.
+"""Several wheels and belts, one after the other: which stages are worth their tool changes, by rough plans.
 
 Single stages are planned first. Then the best of them get another stage: the same belt where too much is left, or a finer belt
 everywhere, before which the stage before leaves an allowance. It ends where another stage brings nothing.

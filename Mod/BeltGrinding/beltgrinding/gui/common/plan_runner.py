@@ -43,8 +43,8 @@ class PlanRunner(Runner):
         super().__init__(job, progress, done)
 
     def work(self, context: Context) -> planned.Found:
-        stop = lambda: self.enough
-        return self.task.find(self.data, context, self.rounds.append, self.words, stop)
+        told = self.rounds.append
+        return self.task.find(self.data, context, told, self.words, lambda: self.enough)
 
     @property
     def searching(self) -> bool:

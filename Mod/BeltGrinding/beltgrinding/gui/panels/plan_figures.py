@@ -18,7 +18,7 @@ from ..common.report_language import language
 from ..widgets.picture_label import PictureLabel
 
 LARGE = 0.9  # of the screen
-LEAST_GAIN, MOST_WHEELS = 0.01, 3  # of the area; wheels that are told
+LEAST_GAIN, MOST_WHEELS = 0.01, 3  # of the area; lines about other wheels
 
 
 class PlanFigures(QtGui.QWidget):

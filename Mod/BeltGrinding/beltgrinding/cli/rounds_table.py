@@ -42,6 +42,7 @@ def _line(head, texts):
 def _passes(one):
     words = [] if one["better"] else ["not better"]
     words += ["full plan"] if one["change"] == "full" else []
+    words += [f"then {_along(k)}, belt {k['belt_angle_deg']:g}" for k in one["further_passes"]]
     return (
         wheel(one["wheel"]),
         _along(one),

@@ -14,7 +14,7 @@ from ..base.kinds import Array, Json
 from ..engine import InputError, core
 from ..job import load as jobs, machine as machines
 from ..job.workpiece import OwnBrep
-from ..raster import raster_path as raster, region
+from ..raster import joined, raster_path as raster, region
 from ..raster.reachable import NO_PASS, NO_ROOM
 from . import bodies, job_data, job_inputs, job_object, stored_facts, waiting
 from .belt_machine import BeltMachine
@@ -30,6 +30,7 @@ KEYS = (
     Key("Along", "Enumeration", "Passes", "raster.along"),
     Key("Direction", "Vector", "Passes", "raster.direction"),
     Key("RegionSize", "Length", "Passes", "raster.region_mm"),
+    Key("FurtherPasses", "JSON", "Passes", "raster.further_passes"),
     Key("PassSpacing", "Enumeration", "Passes", "raster.spacing"),
     Key("StepOver", "Length", "Passes", "raster.step_over_mm"),
     Key("StepOverShare", "Float", "Passes", "raster.step_over_share"),
@@ -119,6 +120,7 @@ class RasterPath(RobotPath):
         older = "Approach" in obj.PropertiesList
         added = {"Entry", "WhereItCollides", "Footprint"} - set(obj.PropertiesList) if older else ()
         add_keys(obj, KEYS)
+        obj.setEditorMode("FurtherPasses", 2)  # with the points of their regions
         # The passes of an older document go on as they were, so that what it grinds stays.
         if "Entry" in added:
             obj.Entry = "direct"
@@ -195,6 +197,14 @@ def settings_of(obj: DocumentObject) -> dict[str, Any]:
     return settings
 
 
+def further_passes(obj: DocumentObject) -> list[dict[str, Any]]:
+    """The settings of each further group of passes, with what it has of the first ones; [] where they cannot be read."""
+    try:
+        return joined.groups(raster.validate(settings_of(obj)))[1:]
+    except InputError:
+        return []
+
+
 def take(obj: DocumentObject, settings: Json, found: Json) -> None:
     """Gives a raster path other settings, and the passes that ``raster.raster`` has laid by them."""
     from_job(obj, KEYS, {"raster": settings})
@@ -259,8 +269,9 @@ def _inputs(obj: DocumentObject) -> tuple[dict[str, Any], dict[str, Any], str]:
     settings = settings["raster"]
     settings["region_points"] = [list(point) for point in getattr(obj, "RegionPoints", [])]
     digest = faces_digest(shape.Faces[number - 1] for number in numbers)
-    # Not what a document of before there were repeats has not: its passes need not be laid anew.
-    told = {key: value for key, value in settings.items() if (key, value) != ("repeats", 1)}
+    # Not what an older document has not: its passes need not be laid anew.
+    newer = {"repeats": 1, "further_passes": []}
+    told = {key: value for key, value in settings.items() if newer.get(key) != value}
     # Nor what one without bodies has not, and whose wheel goes alone.
     placed, stock = bodies.digest(obj.Machine), _stock(obj)
     more = [placed] if placed else []

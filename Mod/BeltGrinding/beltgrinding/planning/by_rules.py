@@ -40,9 +40,15 @@ MOST_SMOOTHING = 4.0  # of the contact's length
 MOST_REPEATS = 20
 BORDER_FORCE = 0.15  # of the force, at borders
 LEAST_FORCE, FORCES = 0.02, 40  # of the force that is set by hand; so many are looked at
+WAY = ("along", "direction", "belt_angle_deg")
 FORCE = "force"  # the change of a force that is set by hand
 GENTLED = 2  # times that such a force is lowered, before passes are compared with others
 FAR_OFF = 0.05  # of the area: gain from which on it is
+ELSEWHERE = (
+    reasons.NOT_REACHED,
+    reasons.FRINGE,
+)  # why too much is left that other passes may get to
+LEFT = 1_000  # samples that tell where
 MOST_OF = 0.9  # of the area that is not done at the least feed: the repeats are for it
 
 # mm (poses,) of the zones of a program as its file will have them; -1: the job's default.
@@ -68,6 +74,17 @@ class Tried(NamedTuple):
     repeats: int  # that it wants
     gentler: tuple[float, float]  # of the area, that less force set by hand may mend; of the force
     looks: Floats  # (3,) unit: the faces' mean normal, 0 of closed ones
+    left: Floats  # (n, 3) mm: samples with too much left, to which the wheel may get with its belt another way
+    left_mm: float  # between them, about
+    left_share: float  # of the area
+
+    def region(self) -> dict[str, Any]:
+        """Settings of a raster that keep to where too much is left, to half the contact's width or to the next sample."""
+        near = self.left_mm <= 0.5 * (self.width_mm or 0.0)
+        return {
+            "region_points": np.round(self.left, 4).tolist(),
+            "region_mm": 0.0 if near else round(self.left_mm, 4),
+        }
 
     def row(self, better: bool) -> dict[str, Any]:
         """Figures of these passes for tables and JSON."""
@@ -85,6 +102,10 @@ class Tried(NamedTuple):
             "run_out_mm": self.wanted["run_out_mm"],
             "smoothing_mm": self.wanted["smoothing_mm"],
             "border_force_share": self.wanted["border_force_share"],
+            "further_passes": [
+                {name: {**self.wanted, **group}[name] for name in WAY}
+                for group in self.wanted["further_passes"]
+            ],
             "poses": self.poses,
             "process_time_s": self.process_time_s,
             "in_tolerance": self.in_tolerance,
@@ -224,6 +245,9 @@ def _seen(
     shares = plan.why["shares"]
     removed, most = _removed(plan), _most(plan)
     undone, repeats = _repeats(plan, wanted["repeats"], removed, most)
+    left, areas = np.isin(plan.why["state"], ELSEWHERE), np.asarray(plan.after.field.areas)
+    some = np.flatnonzero(left)
+    some = some[np.unique(np.linspace(0, len(some) - 1, LEFT).astype(int))] if len(some) else some
     return Tried(
         change=change,
         machine=machine,
@@ -241,6 +265,9 @@ def _seen(
         repeats=repeats,
         gentler=_gentler(plan, removed, most) if one_force(settings) else (0.0, 1.0),
         looks=looks / size if size > 0.1 else np.zeros(3),
+        left=np.asarray(plan.after.field.points, dtype=float)[some],
+        left_mm=float(np.sqrt(areas[left].sum() / max(len(some), 1))),
+        left_share=float(areas[left].sum() / areas.sum()),
     )
 
 

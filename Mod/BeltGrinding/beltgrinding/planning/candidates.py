@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from ..base.kinds import Json
 from ..raster import reach_map
-from .by_rules import Move, Tried
+from .by_rules import MATTERS, Move, Tried
 
 OF_A_WHEEL = 2  # of each wheel besides the job's own
 FAR_BEHIND = 0.1  # of the area: ways on which the wheel gets to so much less are no candidates
@@ -92,6 +92,23 @@ def of_further(one: Seen, start: Move, fixed: Collection[str], best: Tried) -> l
     ]
     alike = [pair for pair in alike if pair[0] >= one.most - FAR_BEHIND]
     return [move for _, move in [*alike, *one_a_way(moves)]][:OF_A_WHEEL]
+
+
+def further_groups(one: Tried, seen: reach_map.Map, fixed: Collection[str]) -> list[Move]:
+    """Passes with a group more, where they leave too much; of ways and belt angles those first with which the wheel gets to most of it
+    by ``seen``, which is of that region. The step-over is by the contact's width there, unless it is ``fixed``.
+    """
+    found = sorted(seen.found, key=lambda reach: -round(reach.share + reach.upright, 2))
+    moves: list[Move] = []
+    for reach in found:
+        if reach.share * one.left_share < MATTERS:
+            continue
+        group = {**reach.way, "belt_angle_deg": reach.belt_angle_deg, **one.region()}
+        if "step_over_mm" not in fixed:
+            group["step_over_mm"] = 0.0
+        groups = [*one.wanted["further_passes"], group]
+        moves.append(("group", one.machine, {**one.wanted, "further_passes": groups}))
+    return moves
 
 
 def _same_way(one: Json, other: Json) -> bool:

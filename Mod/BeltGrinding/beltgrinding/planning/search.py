@@ -1,5 +1,6 @@
 """The search for wheel, direction of the passes and belt angle: first by what the geometry says, then by rough plans of the
-most promising, then by rules from the best of those, then by full plans of the best three.
+most promising, then by rules from the best of those, then with further groups of passes where the best leave too much, then by
+full plans of the best three.
 
 Candidates run side by side, on processes of one thread each. What is found depends on how many were tried, never on how many
 processes did it, nor on which was ready first.
@@ -22,7 +23,7 @@ from ..job.workpiece import read_design
 from ..raster import reach_map
 from . import by_rules, rounds
 from .by_rules import Move, Tried, Zones
-from .candidates import Seen, candidates, of_further
+from .candidates import Seen, candidates, further_groups, of_further
 from .moves import Moves
 
 BUDGET_S = 120.0
@@ -34,8 +35,9 @@ FINALS = 3  # full plans
 FAR_BEHIND = 0.1  # of the area: passes so far behind get no full plan
 GAIN = 0.005  # of the area
 ENOUGH = 0.995  # of the area: nothing else is tried
-COARSE_UNTIL, RULES_UNTIL, FULL_UNTIL = 0.4, 0.65, 0.9  # of the budget
+COARSE_UNTIL, RULES_UNTIL, GROUPS_UNTIL, FULL_UNTIL = 0.35, 0.55, 0.7, 0.9  # of the budget
 TO_END = 0.1  # of the budget, in which what is being tried then may end
+GROUPS, OF_A_GROUP = 3, 4  # further groups of passes; ways and belt angles that are tried for each
 FURTHER = 4  # wheels of which is planned what they would bring
 PROCESS_BYTES, SAMPLE_BYTES = 4e8, 3_000.0  # of a process, and for each sample
 
@@ -164,7 +166,7 @@ class _Run:
         default, coarse = self._coarse(start, candidates(own, others, start, self.search.fixed))
         mine = [one for one in coarse if one.machine["wheel"] == own.machine["wheel"]]
         wheels = self._brought(further, own, mine)
-        best = self._finals(default, self._ruled(default, coarse))
+        best = self._finals(default, self._grouped(self._ruled(default, coarse)))
         fits = [one.map.fits for one in (own, *others, *further)]
         return Found(
             best=best,
@@ -247,6 +249,7 @@ class _Run:
         if not ways or not {"along", "direction"} & set(fixed):
             ways += reach_map.ways(self.data, wanted, self.context.part(0.0, 0.0))
             ways = reach_map.distinct(ways)
+        self.ways = ways
         machines = [self.data["belt_machine"], *self.search.wheels, *self.search.further]
         calls = []
         for number, machine in enumerate(machines):
@@ -320,6 +323,35 @@ class _Run:
         values = self._run(calls, RULES_UNTIL + TO_END, (0.5, 0.7))
         climbed = [value[0] for value in values if value is not None]
         return sorted([*climbed, *coarse], key=lambda one: -one.in_tolerance)
+
+    def _grouped(self, tried: list[Tried]) -> list[Tried]:
+        """Those that were tried, and before them the best with further groups of passes, their ways and belt angles by what the wheel
+        gets to of what is left: as long as one brings more of the area into tolerance."""
+        fixed = self.search.fixed
+        if not tried or "further_passes" in fixed or {"along", "belt_angle_deg"} <= set(fixed):
+            return tried
+        for _ in range(GROUPS):
+            best = tried[0]
+            if best.left_share < by_rules.MATTERS or self._over(GROUPS_UNTIL):
+                break
+            job = {**self.data, "belt_machine": best.machine}
+            near = {**best.wanted, **best.region()}
+            angles = (best.wanted["belt_angle_deg"],) if "belt_angle_deg" in fixed else OWN_ANGLES
+            call = Call(alone, (reach_map.look, job, near, self.ways, angles))
+            (seen,) = self._run([call], GROUPS_UNTIL, (0.7, 0.7))
+            if seen is None:
+                break
+            moves = further_groups(best, seen, fixed)[:OF_A_GROUP]
+            calls = [
+                self._call(by_rules.gentled, move, self.settings, self.zones) for move in moves
+            ]
+            values = self._run(calls, GROUPS_UNTIL + TO_END, (0.7, 0.75))
+            found = [one for one in values if one is not None]
+            found = [one for one in found if one.in_tolerance > best.in_tolerance + GAIN]
+            if not found:
+                break
+            tried = [max(found, key=lambda one: one.in_tolerance), *tried]
+        return tried
 
     def _finals(self, default: Tried | None, tried: list[Tried]) -> Tried:
         """The best of full plans of the best, what the rules found from the start among them unless it is far behind."""

@@ -21,7 +21,19 @@ from ..job.settings import Job
 from ..job.typed import typed
 from ..job.workpiece import read_design
 from ..programs.program import Motion, Program, corner_of
-from . import around, direction, edges, filling, footprint, passes, path_check, reachable, region
+from . import (
+    around,
+    direction,
+    edges,
+    filling,
+    footprint,
+    joined,
+    passes,
+    path_check,
+    reachable,
+    region,
+    telling,
+)
 from .clearing import Clearing
 from .entry import Entry
 from .footprint import belt_extents, contact_width, plane_extents
@@ -37,9 +49,7 @@ MOST_SAMPLES = 400_000
 STEP_SAMPLES = 4  # between neighbouring passes, at least
 POSE_SAMPLES = 3  # between neighbouring poses, at least
 WELD = 0.1  # of the sampling: vertices of neighbouring faces so near are one
-MOST_POSES = 300_000
 ONE_LEVEL = 1.5
-CLOSED = 0.5  # of the length of rings; less is told
 UNCOVERED = 0.01  # of the area; more is warned of
 
 
@@ -69,7 +79,7 @@ def raster(job: Job | Json, settings: Json, context: Context = None) -> dict[str
     """Lays passes on faces of a validated job's design.
 
     Returns dict(frames (n, 4, 4) base_from_tcp mm, feeds (n,) mm/s, forces (n,) N, -1: the job's,
-    rapid (n,) bool, lines (n,) 0, as ``core.ToolPath`` takes them; contacts (n, 4, 4)
+    rapid (n,) bool, lines (n,) 0, as ``core.ToolPath`` takes them, the raster's own passes and then its further groups; contacts (n, 4, 4)
     work_from_contact; passes: list of dict(first, last (poses from 0), level, length_mm), fit (n,)
     mm how deep the undeformed wheel reaches into the part, cuts, beside, stuck (as ``passes.assemble``),
     step_over_mm, contact_width_mm (None if the step-over was given), usual_width_mm (else None; on a plane, of a belt on the median curvatures), contact_length_mm, footprint (as
@@ -88,56 +98,29 @@ def raster(job: Job | Json, settings: Json, context: Context = None) -> dict[str
     def lay(settings: Json, context: Context) -> dict[str, Any]:
         return _laid(read, given, shape, faces, settings, [], context, False)[0]
 
+    def group(settings: Json) -> tuple[dict[str, Any], Clearing]:
+        one, levels, clearing = _laid(read, given, shape, faces, settings, warnings, context)
+        one["places"] = _places(read, shape, faces, settings, one, levels, clearing, context)
+        return one, clearing
+
     tried: list[dict[str, Any]] = []
     if settings["along"] == "auto":
-        way, tried = direction.best(read, given, shape, faces, settings, lay, context)
+        first = joined.groups(settings)[0]
+        way, tried = direction.best(read, given, shape, faces, first, lay, context)
         settings = {**settings, **way}
     warnings: Facts = []
-    result, levels, clearing = _laid(read, given, shape, faces, settings, warnings, context)
-    _tell_ends(result, settings, warnings)
-    _tell_ways(clearing, result, warnings)
-    result["fit"] = _fit(clearing, settings, result, warnings)
-    result["places"] = _places(read, shape, faces, settings, result, levels, clearing, context)
+    found = [group(one) for one in joined.groups(settings)]
+    result, clearing = joined.join([one for one, _ in found]), found[0][1]
+    telling.ends(result, settings, warnings)
+    telling.ways(clearing, result, warnings)
+    result["fit"] = telling.fit(clearing, settings, result, warnings)
     result["reachable"] = reachable.told(result["places"], clearing.tool, settings, warnings)
     result["check"] = path_check.check(read, settings, result, context)
     warnings += result["check"]["problems"]
-    _repeat(result, settings["repeats"], clearing, warnings)
+    warnings += joined.repeat(result, settings["repeats"], clearing)
     result.update(along=settings["along"], direction=settings["direction"], tried=tried)
-    result["warnings"] = warnings
+    result["warnings"] = list({str(one): one for one in warnings}.values())  # of a group each
     return result
-
-
-def _repeat(result: dict[str, Any], count: int, clearing: Clearing, warnings: Facts) -> None:
-    """Has all passes of a path run through ``count`` times, from the end back to the beginning as from pass to pass."""
-    if count == 1:
-        return
-    if clearing.ways_blocked(result["contacts"][[-1, 0]], np.array([True, True])):
-        warnings.append(
-            core.Fact(
-                "raster.way_back_blocked",
-                "from the end of the passes straight back to their beginning {tool} goes through the part; lead the "
-                "robot there by hand, or enlarge clearance_mm",
-                tool=clearing.name,
-            )
-        )
-    poses, once = len(result["frames"]), result["passes"]
-    if poses * count > MOST_POSES:
-        raise InputError(
-            "raster.too_many_repeats",
-            "{key}: the passes run through {count} times have more than {poses} poses",
-            key="raster.repeats",
-            count=count,
-            poses=MOST_POSES,
-        )
-    for name in ("contacts", "frames"):
-        result[name] = np.tile(result[name], (count, 1, 1))
-    for name in ("feeds", "forces", "rapid", "contact", "lines", "zones", "fit"):
-        result[name] = np.tile(result[name], count)
-    result["passes"] = [
-        {**one, "first": one["first"] + k * poses, "last": one["last"] + k * poses}
-        for k in range(count)
-        for one in once
-    ]
 
 
 def _laid(
@@ -181,7 +164,7 @@ def _laid(
                     )
                 )
             elif belt and along is not None:
-                _tell_beyond(along["beyond"], warnings)
+                telling.beyond(along["beyond"], warnings)
         step_over = settings["step_over_share"] * seen["width_mm"]
     finer = _finer(area, step_over)
     if not settings["sampling_mm"] and spacing > finer:
@@ -189,7 +172,7 @@ def _laid(
         sheets = surfaces(job, shape, faces, spacing, settings, [], context)
     levels: Levels = _lines(sheets, settings, step_over, spacing, lever, warnings, context)
     if settings["along"] == "rings" and settings["order"] != "helix":
-        _tell_open_rings(levels, warnings)
+        telling.open_rings(levels, warnings)
     wanted = _wanted(settings, seen["width_mm"] or step_over)
     if wanted is not None:
         region.check(wanted[0], np.vstack([s["points"] for s in sheets]), wanted[1])
@@ -223,7 +206,7 @@ def _laid(
         warned = {**settings, "where_it_collides": "warn"}
         clearing = Clearing(job, shape, warned, [], context, advance)
         result = passes.assemble(levels, settings, cell, entry, clearing)
-        _tell_no_room(result, clearing, warnings)
+        telling.no_room(result, clearing, warnings)
     if not result["passes"]:
         raise InputError(
             "raster.no_pass",
@@ -251,33 +234,6 @@ def _laid(
         if added:
             result.update(passes.assemble([*cleared, *added], settings, cell, entry, clearing))
     return result, levels, clearing
-
-
-def _tell_beyond(share: float, warnings: Facts) -> None:
-    if share > 0.0:
-        warnings.append(
-            core.Fact(
-                "raster.belt_beyond_faces",
-                "at {share:.0f} % of the places the belt's contact goes on over the border of the faces: the passes lie "
-                "by what of it is on them",
-                share=100.0 * share,
-            )
-        )
-
-
-def _tell_open_rings(levels: Levels, warnings: Facts) -> None:
-    pieces = [piece for level in levels for piece in level]
-    closed = sum(passes.length(piece["points"]) for piece in pieces if piece["closed"])
-    share = closed / max(sum(passes.length(piece["points"]) for piece in pieces), 1e-9)
-    if share < CLOSED:
-        warnings.append(
-            core.Fact(
-                "raster.rings_open",
-                "of the length of the passes round the faces {share:.0f} % are closed rings; the others end at "
-                "borders or sharp edges",
-                share=100.0 * share,
-            )
-        )
 
 
 def _overlap(result: dict[str, Any]) -> bool:
@@ -328,19 +284,6 @@ def _extents(settings: Json, result: dict[str, Any]) -> Extents:
     return (along, across, gap) if turn < math.sqrt(0.5) else (across, along, gap)
 
 
-def _tell_ends(result: dict[str, Any], settings: Json, warnings: Facts) -> None:
-    if result["cuts"]:
-        warnings.append(
-            core.Fact(
-                "raster.passes_end",
-                "at {count} places a pass ends, where the tool would turn by more than {rate:.4g} degrees per "
-                "mm or go back in contact; what lies there may stay without a pass",
-                count=result["cuts"],
-                rate=settings["max_turn_deg_per_mm"],
-            )
-        )
-
-
 def _check_size(
     job: Job,
     shape: core.Shape,
@@ -355,7 +298,7 @@ def _check_size(
     if not (settings["step_over_mm"] or seen["plane"]):
         return  # told later: a rigid tool has no contact
     step_over = settings["step_over_mm"] or settings["step_over_share"] * seen["plane"]
-    if seen["area"] / (step_over * settings["max_distance_mm"]) > MOST_POSES:
+    if seen["area"] / (step_over * settings["max_distance_mm"]) > joined.MOST_POSES:
         raise InputError(
             "raster.too_large",
             "the faces are {size:.4g} mm large: passes {step_over:.3g} mm apart have more than {poses} poses. "
@@ -363,7 +306,7 @@ def _check_size(
             "poses",
             size=seen["size"],
             step_over=step_over,
-            poses=MOST_POSES,
+            poses=joined.MOST_POSES,
         )
 
 
@@ -443,88 +386,6 @@ def _lines(
             mine.setdefault(line["level"], []).append(line)
         levels += [mine[level] for level in sorted(mine)]
     return levels
-
-
-def _fit(clearing: Clearing, settings: Json, result: dict[str, Any], warnings: Facts) -> Floats:
-    fit = np.zeros(len(result["frames"]))
-    touching = np.flatnonzero(result["contact"])
-    fit[touching] = clearing.tool_depth(result["contacts"][touching])
-    tight = np.flatnonzero(fit > settings["fit_mm"] * (1.0 + 1e-6) + 1e-9)
-    if len(tight):
-        worst = int(np.argmax(fit))
-        warnings.append(
-            core.Fact(
-                "raster.wheel_does_not_fit",
-                "{tool} does not fit the part at {count} poses: undeformed, it reaches at worst {depth:.2f} mm into "
-                "it, at pose {pose}; take {smaller}, or another direction",
-                tool=clearing.tool.name,
-                smaller=clearing.tool.smaller,
-                count=len(tight),
-                depth=fit[worst],
-                pose=worst + 1,
-            )
-        )
-    met = clearing.held.first_met(result["contacts"][touching])
-    if (met >= 0).any():
-        warnings.append(
-            core.Fact(
-                "raster.held_does_not_fit",
-                "at {count} poses, first at pose {pose}, what goes with {tool} meets the part, or what is fixed to it: "
-                "{bodies}; lay the passes another way, or make room",
-                count=int((met >= 0).sum()),
-                pose=int(touching[np.argmax(met >= 0)]) + 1,
-                tool=clearing.tool.name,
-                bodies=", ".join(clearing.in_the_way(result["contacts"][touching])),
-            )
-        )
-    return fit
-
-
-def _tell_ways(clearing: Clearing, result: dict[str, Any], warnings: Facts) -> None:
-    blocked = clearing.ways_blocked(result["contacts"], result["rapid"])
-    if blocked or result["stuck"]:
-        warnings.append(
-            core.Fact(
-                "raster.ways_blocked",
-                "off the passes {tool} goes through the part: on {ways} straight rapid ways, first to pose {pose}, "
-                "and {stuck} ends of passes have no room above them; lead the robot there by hand, or take {smaller}",
-                tool=clearing.name,
-                smaller=clearing.tool.smaller,
-                ways=len(blocked),
-                pose=blocked[0] + 1 if blocked else 0,
-                stuck=result["stuck"],
-            )
-        )
-
-
-def _tell_no_room(result: dict[str, Any], clearing: Clearing, warnings: Facts) -> None:
-    """Before all other warnings."""
-    if not result["passes"]:
-        return
-    contacts = result["contacts"][result["contact"]]
-    if (clearing.tool_depth(contacts) <= clearing.fit).any():
-        warnings.insert(
-            0,
-            core.Fact(
-                "raster.no_room_for_held",
-                "what goes with {tool} would meet the part, or what is fixed to it, wherever {tool} itself has room on these "
-                "faces ({bodies}): the passes are laid as if it did not, and must not be ground so; lay them another way, or "
-                "make room",
-                tool=clearing.tool.name,
-                bodies=", ".join(clearing.in_the_way(contacts)),
-            ),
-        )
-        return
-    warnings.insert(
-        0,
-        core.Fact(
-            "raster.no_room",
-            "{tool} fits nowhere on these faces: the passes are laid as if it did, and must not be ground "
-            "with it; take {smaller}, or another direction",
-            tool=clearing.tool.name,
-            smaller=clearing.tool.smaller,
-        ),
-    )
 
 
 def program(result: Json, tool: str = "", base: str = "") -> Program:

@@ -21,6 +21,7 @@ from .sheets import facets, surfaces
 
 SAMPLES = 2_000  # on the faces, about, to see how passes go
 PLACES = 200  # that are looked at
+NEARLY_ALL = 0.99  # of the places on which two ways are the same, for them to be one
 
 
 class Reach(NamedTuple):
@@ -82,15 +83,17 @@ def look(
     angles: Sequence[float],
     context: Context = None,
 ) -> Map:
-    """The ``Map`` of a validated job's wheel or belt, for each of ``ways`` with the belt at each of ``angles`` degrees to it.
-    A way on which no pass can be laid has no entry. Raises InputError, Cancelled."""
+    """The ``Map`` of a validated job's wheel or belt, for each of ``ways`` with the belt at each of ``angles`` degrees to it, on all of
+    the faces or in the region of the ``settings``. A way on which no pass can be laid has no entry. Raises InputError,
+    Cancelled."""
     job = typed(job)
     context = context or core.RunContext()
     shape = read_design(job.design, context)
     faces = faces_of(job, shape, settings)
     clearing = Clearing(job, shape, settings, [], context)
     spacing = math.sqrt(sum(shape.face_area(face) for face in faces) / SAMPLES)
-    found = []
+    found: list[Reach] = []
+    laid: list[tuple[Floats, Floats]] = []  # (middles, along) of ways
     for way in ways:
         try:
             parts = surfaces(job, shape, faces, spacing, {**settings, **way}, [], context)
@@ -101,13 +104,17 @@ def look(
             np.concatenate([getattr(one, name) for one in seen])
             for name in ("middles", "normals", "along", "areas")
         )
-        some = _spread(areas)
+        if any(_same(points, along, *one) for one in laid):
+            continue
+        laid.append((points, along))
+        some = _spread(areas * _near(points, settings, spacing))
         for angle in angles:
             frames = contact_frames(points[some], normals[some], along[some], math.radians(angle))
             shares = clearing.fits(frames).mean(), clearing.fits_upright(frames).mean()
             found.append(Reach(way, angle, *map(float, shares)))
     field = _field(shape, faces, SAMPLES, context)
-    some = _spread(np.asarray(field.areas, dtype=float))
+    near = _near(np.asarray(field.points), settings, spacing)
+    some = _spread(np.asarray(field.areas, dtype=float) * near)
     normals = np.asarray(field.normals, dtype=float)[some]
     fits = reachable.in_any_direction(clearing, np.asarray(field.points)[some], normals)
     return Map(found, fits)
@@ -118,6 +125,23 @@ def _field(
 ) -> core.HeightField:
     area = sum(shape.face_area(face) for face in faces)
     return core.sample_faces(shape, list(faces), math.sqrt(area / samples), context=context)[0]
+
+
+def _same(points: Floats, along: Floats, others: Floats, along_others: Floats) -> bool:
+    """Whether passes at the same points go the same way nearly everywhere."""
+    if points.shape != others.shape or not np.allclose(points, others):
+        return False
+    alike = abs((along * along_others).sum(axis=1)) > direction.SAME_WAY
+    return bool(alike.mean() > NEARLY_ALL)
+
+
+def _near(points: Floats, settings: Json, spacing: float) -> Array:
+    """(n,) bool: points (n, 3) in the region of the settings, or nearer to it than places are to each other; all, where it has none."""
+    wanted = settings["region_points"]
+    if not wanted:
+        return np.ones(len(points), dtype=bool)
+    far = max(settings["region_mm"], spacing)
+    return reachable.nearest_distance(points, np.asarray(wanted, dtype=float)) <= far
 
 
 def _spread(areas: Floats) -> Array:

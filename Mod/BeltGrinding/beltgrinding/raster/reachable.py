@@ -91,7 +91,7 @@ def look(
         outside = nearest_distance(points, np.array(wanted[0], dtype=float)) > wanted[1]
         state[outside & (state != GROUND)] = NOT_WANTED
         counted = np.where(outside, 0.0, areas)
-    return {
+    found = {
         "points": points,
         "normals": normals,
         "areas": areas,
@@ -100,11 +100,21 @@ def look(
         "faces": owner,
         "fits": fits,
         "state": state,
-        "share": _share(fits, counted),
-        "by_face": _by_face(fits, owner, counted),
         "alone": alone,
         "in_the_way": clearing.in_the_way(frames[alone & ~fits & (counted > 0)]),
-        "another_way": _another_way(clearing, points, normals, counted, fits),
+    }
+    return with_shares(found, _another_way(clearing, points, normals, counted, fits))
+
+
+def with_shares(seen: Json, another_way: float) -> dict[str, Any]:
+    """Places with the shares of the area that follow from ``fits`` and ``counted``; ``another_way``: with the belt in whichever
+    direction."""
+    fits, counted = seen["fits"], seen["counted"]
+    return {
+        **seen,
+        "share": _share(fits, counted),
+        "by_face": _by_face(fits, seen["faces"], counted),
+        "another_way": max(another_way, _share(fits, counted)),
     }
 
 

@@ -173,6 +173,7 @@ LABELS = {
     "raster.fit_mm": ("raster_path", "Rim in the part at most"),
     "raster.footprint": ("raster_path", "Contact width"),
     "raster.force_N": ("raster_path", "Force (0: machine's)"),
+    "raster.further_passes": ("raster_path", "Further Passes"),
     "raster.keep_edge_mm": ("raster_path", "Keep Edge"),
     "raster.lead_mm": ("raster_path", "Outside by (0: by contact)"),
     "raster.max_distance_mm": ("raster_path", "Distance at most"),

@@ -26,6 +26,13 @@ def figure(value: Any, spec: str = "") -> str:
     return localized(text) if isinstance(value, (int, float)) else text
 
 
+def way_of_passes(one: dict[str, Any]) -> tuple[str, str]:
+    """(along what, the belt's angle in degrees) of passes, by their settings."""
+    way = ", ".join(figure(part, ".3g") for part in one["direction"])
+    way = f"({way})" if one["along"] == "direction" else one["along"]
+    return way, figure(one["belt_angle_deg"], ".3g")
+
+
 def length_text(value: float, more: int = 0, sign: str = "+") -> str:
     """A deviation in mm as a number with its unit; ``more``: decimals beyond the usual."""
     return f"{length_number(value, more, sign)} {_unit().symbol}"

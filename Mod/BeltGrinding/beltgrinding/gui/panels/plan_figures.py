@@ -11,7 +11,7 @@ from ...objects import preferences, stored_facts
 from ...objects.kinds import DocumentObject
 from ...planning import pictures, reasons
 from ..common.compat import QtCore, QtGui, translate
-from ..common.figures import figure
+from ..common.figures import figure, way_of_passes
 from ..charts.feed_chart import FeedChart
 from ..common.kinds import Json, QtEvent, Table, Texts
 from ..common.report_language import language
@@ -220,11 +220,11 @@ def _passes(one: Json) -> str:
         "BeltGrinding", "Passes {:.3g} mm apart, run-out {:.3g} mm, run through {} times, {} poses"
     )
     told = text.format(one["step_over_mm"], one["run_out_mm"], one["repeats"], one["poses"])
-    way = ", ".join(figure(part, ".3g") for part in one["direction"])
-    way = f"({way})" if one["along"] == "direction" else one["along"]
     text = translate("BeltGrinding", "along {}, belt at {} degrees, {} N")
-    numbers = (figure(one[key], ".3g") for key in ("belt_angle_deg", "force_N"))
-    return f"{told}\n{text.format(way, *numbers)}"
+    lines = [told, text.format(*way_of_passes(one), figure(one["force_N"], ".3g"))]
+    text = translate("BeltGrinding", "then, where too much is left: along {}, belt at {} degrees")
+    lines += [text.format(*way_of_passes(group)) for group in one.get("further_passes", [])]
+    return "\n".join(lines)
 
 
 def _table(name: str, *columns: str, stretched: int = 0) -> Table:

@@ -19,6 +19,7 @@ from ..common.report_language import language
 from ..scene.left_out import COLOURS
 from ..widgets.active_programs import active_box
 from ..widgets.form import Form
+from ..widgets.further_passes import FurtherPasses
 from .panel import Panel
 
 WAIT = 300  # ms after the last change
@@ -41,6 +42,8 @@ class RasterPanel(Panel):
         self.body.addWidget(self.left)
         self.body.addWidget(self._faces())
         self.body.addWidget(self._region())
+        self.further = FurtherPasses(obj, self.changed)
+        self.body.addWidget(self.further)
         self.passes = self._passes()
         self.body.addWidget(self.passes)
         self.process = self._process()

@@ -68,7 +68,8 @@ def test_a_deadline_leaves_the_rest():
     with Crew(1) as hands:
         hands.run([Call(square, (1,))])
         found = hands.run(
-            [Call(sleep, (0.0,)), Call(sleep, (60.0,)), Call(square, (1,))], over=crew.deadline(1.0)
+            [Call(sleep, (0.0,)), Call(sleep, (60.0,)), Call(square, (1,))],
+            over=crew.End(time.monotonic() + 1.0).passed,
         )
         assert found[0].value == 0.0 and found[1] is found[2] is None
         assert hands.run([Call(square, (3,))])[0].value == 9  # it works on after that

@@ -80,9 +80,8 @@ def test_places_are_ground_by_the_group_that_gets_there():
     assert one["reachable"]["share"] < 0.7, one["reachable"]
     assert both["reachable"]["share"] > 0.85, both["reachable"]
     assert both["reachable"]["left_out"] < 0.05
-    codes = {warning.code for warning in both["warnings"]}
-    assert "raster.another_way" not in codes and "raster.not_reachable_leaned" not in codes, codes
-    assert len(codes) == len(both["warnings"])  # none twice
+    codes = [warning.code for warning in both["warnings"]]
+    assert len(codes) == len(set(codes)), codes  # of both groups once
 
 
 @pytest.mark.parametrize(

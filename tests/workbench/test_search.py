@@ -153,6 +153,8 @@ def test_without_time_or_wish_it_gives_what_the_rules_give(small):
     shares = [one.plan.after.summary["in_tolerance_area_share"] for one in (by_hand, found)]
     assert shares[1] >= shares[0] - 1e-9 and not found.search["through"]
     assert told[: len(found.tried)] == found.tried
+    # A wish is heard in the processes, too: the rules try no second passes.
+    assert [one["change"] for one in found.tried] == ["first", "full"]
 
 
 @pytest.mark.slow
@@ -195,6 +197,7 @@ def tried(machine=None, shares=None, gentler=(0.0, 1.0), **wanted):
     return by_rules.Tried(
         *("first", machine, settings, 0.5, feeds, {**none, **(shares or {})}, 0.2),
         *(6.0, 8.0, 3.0, 40, 10.0, 0.0, 1, gentler, up),
+        *(np.zeros((0, 3)), 0.0, 0.0),
     )
 
 
@@ -296,8 +299,8 @@ def test_the_command_searches_and_keeps_what_it_tried(tmp_path, capsys):
     plan = json.loads((out / "plan.json").read_text())
     assert plan["search"]["tried"] and plan["search"]["geometry"]
     wheel = json.loads((out / "job.json").read_text())["belt_machine"]["wheel"]
-    sizes = [one["wheel"]["radius_mm"] for one in plan["search"]["tried"]]
-    assert wheel["radius_mm"] in sizes and len(set(sizes)) > 1
+    assert wheel["radius_mm"] in [one["wheel"]["radius_mm"] for one in plan["search"]["tried"]]
+    assert len({one["wheel"]["radius_mm"] for one in plan["search"]["geometry"]}) > 1
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ import collections
 import time
 from collections.abc import Callable, Sequence
 from multiprocessing.connection import wait
+from pathlib import Path
 from types import TracebackType
 from typing import Any, NamedTuple
 
@@ -165,11 +166,12 @@ class Crew:
         )
 
 
-def deadline(seconds: float) -> Callable[[], bool]:
-    """For ``over``: says so that many seconds from now."""
-    return passed(time.monotonic() + seconds)
+class End(NamedTuple):
+    """Until when something new may begin, also in other processes."""
 
+    at: float  # s of the monotonic clock, which they have in common
+    file: str = ""  # is there as long as it may; "": by the clock alone
 
-def passed(end: float) -> Callable[[], bool]:
-    """For ``over``: says so from ``end`` of the monotonic clock on, in seconds."""
-    return lambda: time.monotonic() >= end
+    def passed(self) -> bool:
+        """For ``over``."""
+        return time.monotonic() >= self.at or (bool(self.file) and not Path(self.file).exists())

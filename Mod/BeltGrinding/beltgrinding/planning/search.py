@@ -8,13 +8,15 @@ processes did it, nor on which was ready first.
 
 from __future__ import annotations
 
+import tempfile
 import time
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..base.crew import Answer, Call, Crew, passed
+from ..base.crew import Answer, Call, Crew, End
 from ..base.kinds import Context, Json, known
 from ..engine import InputError, core
 from ..job import resolution
@@ -84,27 +86,26 @@ def alone(function: Callable[..., Any], *arguments: Any) -> Any:
 
 def ruled(
     data: Json,
-    until: float,
+    until: End,
     first: Move,
     settings: Json,
     zones: Zones | None,
     moves: tuple[by_rules.Moves, ...] = (),
     before: Tried | None = None,
 ) -> tuple[Tried, list[dict[str, Any]]]:
-    """As ``by_rules.climb``; nothing new is tried after ``until`` of the monotonic clock."""
-    return by_rules.climb(data, first, settings, zones, moves, before=before, over=passed(until))
+    """As ``by_rules.climb``; nothing new is tried after ``until``."""
+    return by_rules.climb(data, first, settings, zones, moves, before=before, over=until.passed)
 
 
-def full(data: Json, until: float, tried: Tried, settings: Json, zones: Zones | None) -> Tried:
-    """Passes that were tried with the feeds and forces of a full plan in the coarse resolution. No round begins after ``until`` of the
-    monotonic clock."""
+def full(data: Json, until: End, tried: Tried, settings: Json, zones: Zones | None) -> Tried:
+    """Passes that were tried with the feeds and forces of a full plan in the coarse resolution. No round begins after ``until``."""
     data = by_rules.with_machine(data, tried.machine, tried.wanted, settings)
     laid = by_rules.lay(data, tried.wanted, settings, core.RunContext(), zones)
     settings = {**settings, "goal": "tolerance", "levels": 0, "check": False}
     job = resolution.applied(
         resolution.with_mode(by_rules.with_path(data, laid), resolution.COARSE), []
     )
-    plan = rounds.plan(job, settings, start=tried.start, over=passed(until))
+    plan = rounds.plan(job, settings, start=tried.start, over=until.passed)
     share = max(by_rules.share(one) for one in plan.rounds)
     planned = tried._replace(change="full", in_tolerance=share, start=(plan.new, plan.factors))
     return planned._replace(shares=plan.why["shares"])
@@ -125,7 +126,11 @@ def find(
     ``zones``: must be picklable; ``stop()``: whether the best so far is enough. Raises InputError, Cancelled.
     """
     run = _Run(data, first, settings, search, zones, told, stop, context or core.RunContext())
-    with Crew(search.workers, _bytes(data, first)) as run.crew:
+    with Crew(
+        search.workers, _bytes(data, first)
+    ) as run.crew, tempfile.TemporaryDirectory() as folder:
+        run.going = Path(folder, "going")
+        run.going.touch()
         return run.found()
 
 
@@ -141,6 +146,7 @@ def _bytes(data: Json, first: Json) -> float:
 
 class _Run:
     crew: Crew
+    going: Path  # a file that is there until who asked wants no more
 
     def __init__(
         self,
@@ -185,14 +191,15 @@ class _Run:
     def _call(self, function: Callable[..., Any], *arguments: Any) -> Call:
         return Call(alone, (function, self.data, *arguments))
 
-    def _until(self, share: float) -> float:
-        """Of the monotonic clock, which processes have in common: when that share of the budget is spent."""
-        return self.begun + share * self.search.budget_s
+    def _until(self, share: float) -> End:
+        """When that share of the budget is spent, or who asked wants no more."""
+        return End(self.begun + share * self.search.budget_s, str(self.going))
 
     def _over(self, share: float) -> bool:
         """Whether that share of the budget is spent, or who asked wants no more."""
-        spent = time.monotonic() > self._until(share)
-        return spent or (self.stop is not None and self.stop())
+        if self.stop is not None and self.stop():
+            self.going.unlink(missing_ok=True)  # processes look at it
+        return self._until(share).passed()
 
     def _run(
         self, calls: Sequence[Call], until: float, part: tuple[float, float], needed: int = 0
@@ -212,7 +219,7 @@ class _Run:
         answers = self.crew.run(
             calls,
             taken,
-            lambda: not left and (enough or self._over(until)),
+            lambda: (enough or self._over(until)) and not left,
             self.context.part(*part),
         )
         if enough:  # what else was done until then is chance

@@ -20,7 +20,7 @@ SUMMED = ("cuts", "beside", "stuck")
 
 def groups(settings: Json) -> list[dict[str, Any]]:
     """The settings of each group of passes: those of a raster, then with what each of its further groups has in their place."""
-    first = {**settings, "further_passes": []}
+    first: dict[str, Any] = {**settings, "further_passes": []}
     return [first, *({**first, **one} for one in settings["further_passes"])]
 
 

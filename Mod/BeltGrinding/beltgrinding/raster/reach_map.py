@@ -107,14 +107,15 @@ def look(
         if any(_same(points, along, *one) for one in laid):
             continue
         laid.append((points, along))
-        some = _spread(areas * _near(points, settings, spacing))
+        some = _spread(np.where(_near(points, settings, spacing), areas, 0.0))
         for angle in angles:
             frames = contact_frames(points[some], normals[some], along[some], math.radians(angle))
             shares = clearing.fits(frames).mean(), clearing.fits_upright(frames).mean()
             found.append(Reach(way, angle, *map(float, shares)))
     field = _field(shape, faces, SAMPLES, context)
     near = _near(np.asarray(field.points), settings, spacing)
-    some = _spread(np.asarray(field.areas, dtype=float) * near)
+    areas = np.asarray(field.areas, dtype=float)
+    some = _spread(np.where(near, areas, 0.0))
     normals = np.asarray(field.normals, dtype=float)[some]
     fits = reachable.in_any_direction(clearing, np.asarray(field.points)[some], normals)
     return Map(found, fits)
@@ -140,8 +141,8 @@ def _near(points: Floats, settings: Json, spacing: float) -> Array:
     wanted = settings["region_points"]
     if not wanted:
         return np.ones(len(points), dtype=bool)
-    far = max(settings["region_mm"], spacing)
-    return reachable.nearest_distance(points, np.asarray(wanted, dtype=float)) <= far
+    apart = reachable.nearest_distance(points, np.asarray(wanted, dtype=float))
+    return apart <= max(settings["region_mm"], spacing, float(apart.min()))
 
 
 def _spread(areas: Floats) -> Array:

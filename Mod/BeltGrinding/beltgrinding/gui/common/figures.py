@@ -5,6 +5,7 @@ comma is that sign, so that no number can be read a thousand times too small.
 from __future__ import annotations
 
 import string
+from collections.abc import Mapping
 from typing import Any
 
 from PySide import QtCore
@@ -26,7 +27,7 @@ def figure(value: Any, spec: str = "") -> str:
     return localized(text) if isinstance(value, (int, float)) else text
 
 
-def way_of_passes(one: dict[str, Any]) -> tuple[str, str]:
+def way_of_passes(one: Mapping[str, Any]) -> tuple[str, str]:
     """(along what, the belt's angle in degrees) of passes, by their settings."""
     way = ", ".join(figure(part, ".3g") for part in one["direction"])
     way = f"({way})" if one["along"] == "direction" else one["along"]

@@ -1,5 +1,6 @@
 """The raster path's command and panel."""
 
+import json
 from types import SimpleNamespace
 
 import pytest
@@ -8,7 +9,18 @@ import FreeCADGui as Gui
 import Part
 from PySide import QtGui
 
-from support.hands import field, menu, prepare, press, screenshot, settle, type_in, wait, widgets
+from support.hands import (
+    field,
+    menu,
+    prepare,
+    press,
+    screenshot,
+    settle,
+    type_in,
+    visible,
+    wait,
+    widgets,
+)
 
 pytestmark = pytest.mark.freecad(window=True)
 
@@ -198,3 +210,29 @@ def test_what_is_left_out_is_coloured():
     path.ViewObject.Visibility = False
     assert path.ViewObject.Proxy.left.whichChild.getValue() == -1
     press("Cancel")
+
+
+def test_further_passes_are_listed_and_left_out():
+    here = prepared()
+    doc, steps = here.doc, here.steps
+    menu("Raster path...")
+    path = doc.RasterPath
+    assert not visible(QtGui.QLabel, "furtherPasses")
+    type_in("StepOver", "8 mm")
+    wait(lambda: path.PassCount == 5)
+    press("OK")
+    group = {"along": "v", "belt_angle_deg": 90.0, "region_points": [[20.0, 20.0, 20.0]]}
+    path.FurtherPasses = json.dumps([group])
+    doc.recompute()
+    more = path.PassCount
+    assert more > 5
+    path.ViewObject.Proxy.doubleClicked(path.ViewObject)
+    settle()
+    assert visible(QtGui.QLabel, "furtherPasses")
+    assert field("furtherPasses").text() == "along v, belt at 90 degrees, near 1 points"
+    press("Leave them out")
+    wait(lambda: path.PassCount == 5)
+    assert not visible(QtGui.QLabel, "furtherPasses")
+    press("Cancel")
+    assert path.PassCount == more and json.loads(path.FurtherPasses) == [group]
+    assert steps < doc.UndoCount

@@ -165,10 +165,18 @@ void bind_height_field(py::module_& m) {
         .def_readonly("sd_freedom", &HeightField::sd_freedom)
         .def(
             "set_height_error",
-            [](HeightField& field, std::vector<float> error, int rings) {
+            [](HeightField& field,
+               const py::array_t<float, py::array::c_style | py::array::forcecast>& given,
+               int rings) {
+                std::vector<float> error(given.data(), given.data() + given.size());
+                for (const float one : error) {
+                    if (!(one >= 0.0F) || std::isinf(one)) {
+                        throw InputError("call.height_error",
+                                         "the error of a height is no length of 0 or more");
+                    }
+                }
                 spread_largest(field, error, rings);
                 field.height_error = std::move(error);
-                field.validate();
             },
             py::arg("error"), py::arg("rings") = 0,
             "Estimate of what the contact's cells leave open of every height, mm, 0 or more: each "

@@ -95,9 +95,7 @@ def test_a_run_warns_of_what_its_cells_leave_open():
 
 def test_finer_cells_are_told_to_err_less():
     coarse = runs.run(JOBS["slab narrower than the wheel"], resume=False)
-    fine = runs.run(
-        convergence.scaled(JOBS["slab narrower than the wheel"], "fine"), resume=False
-    )
+    fine = runs.run(convergence.scaled(JOBS["slab narrower than the wheel"], "fine"), resume=False)
     shares = [one.summary["cell_error_mm"]["p95"] for one in (coarse, fine)]
     assert shares[1] < 0.9 * shares[0]
 

@@ -29,7 +29,9 @@ def estimate(job: Job, field: core.HeightField, unresolved: Sequence[Floats]) ->
     if not all(len(one) for one in unresolved):
         return
     cell = max(job.belt_machine.contact_spacing_mm, SAMPLES_PER_CELL * field.spacing)
-    field.set_height_error(MARGIN * np.abs(np.sum(unresolved, axis=0)), math.ceil(cell / field.spacing))
+    field.set_height_error(
+        MARGIN * np.abs(np.sum(unresolved, axis=0)), math.ceil(cell / field.spacing)
+    )
 
 
 def figures(job: Job, field: core.HeightField) -> dict[str, Json]:

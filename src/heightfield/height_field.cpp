@@ -44,7 +44,9 @@ std::size_t HeightField::bytes() const {
            rays.capacity() * sizeof(Vec3f) + area.capacity() * sizeof(float) +
            stock_height.capacity() * sizeof(float) + height.capacity() * sizeof(double) +
            face.capacity() * sizeof(std::uint32_t) + flags.capacity() +
-           (height_sd.capacity() + measured.capacity() + heat.rise.capacity()) * sizeof(float) +
+           (height_sd.capacity() + height_error.capacity() + measured.capacity() +
+            heat.rise.capacity()) *
+               sizeof(float) +
            heat.motion.capacity() * sizeof(std::uint32_t) + trace.bytes() + finish.bytes() +
            triangles.bytes();
 }

@@ -51,13 +51,14 @@ void each_finish_array(Finish& f, Visit&& visit) {
 constexpr const char* kTriangles = "triangles";
 constexpr const char* kSdFreedom = "height_sd_freedom";  // where the heights are not normal
 
-constexpr const char* kFinish = "finish_settled_um";  // where the finish was computed
-constexpr const char* kHeat = "heat_peak_rise_K";     // where heat was computed
-constexpr const char* kHeatMotion = "heat_motion";    // with it
-constexpr const char* kTrace = "trace_first_motion";  // where the simulation kept a trace
-constexpr const char* kMeasured = "measured_mm";      // where a scan was compared
-constexpr const char* kHeightSd = "height_sd_mm";     // where a calibrated law gave it
-constexpr const char* kRays = "ray";                  // where some lean
+constexpr const char* kFinish = "finish_settled_um";     // where the finish was computed
+constexpr const char* kHeat = "heat_peak_rise_K";        // where heat was computed
+constexpr const char* kHeatMotion = "heat_motion";       // with it
+constexpr const char* kTrace = "trace_first_motion";     // where the simulation kept a trace
+constexpr const char* kMeasured = "measured_mm";         // where a scan was compared
+constexpr const char* kHeightSd = "height_sd_mm";        // where a calibrated law gave it
+constexpr const char* kHeightError = "height_error_mm";  // where a run estimated it
+constexpr const char* kRays = "ray";                     // where some lean
 
 Fact within(const std::string& path) {
     return {"heightfield.file", "{file}: the height field ", {{"file", path}}};
@@ -79,6 +80,8 @@ void write_all(const HeightField& field, hid_t file, const std::string& attribut
         if (std::isfinite(field.sd_freedom))
             write_scalar(file, kSdFreedom, H5T_NATIVE_DOUBLE, &field.sd_freedom);
     }
+    if (!field.height_error.empty())
+        write_array(file, kHeightError, field.height_error, H5T_NATIVE_FLOAT, 1);
     if (!field.rays.empty()) write_array(file, kRays, field.rays, H5T_NATIVE_FLOAT, 3);
     if (!field.measured.empty()) {
         write_array(file, kMeasured, field.measured, H5T_NATIVE_FLOAT, 1);
@@ -126,6 +129,9 @@ HeightField read(std::unique_ptr<Storage> storage, std::string* attributes) {
         read_array(file, kHeightSd, field.height_sd, H5T_NATIVE_FLOAT, 1);
         if (H5Aexists(file, kSdFreedom) > 0)
             read_scalar(file, kSdFreedom, H5T_NATIVE_DOUBLE, &field.sd_freedom);
+    }
+    if (H5Lexists(file, kHeightError, H5P_DEFAULT) > 0) {
+        read_array(file, kHeightError, field.height_error, H5T_NATIVE_FLOAT, 1);
     }
     if (H5Lexists(file, kTrace, H5P_DEFAULT) > 0) {
         each_trace_array(field.trace, [&](const char* array, auto& data, hid_t type) {

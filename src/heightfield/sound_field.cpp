@@ -104,6 +104,7 @@ void Look::sizes() {
     length("flags", field_.flags);
     length_if_any("rays", field_.rays);
     length_if_any("height_sd", field_.height_sd);
+    length_if_any("height_error", field_.height_error);
     length_if_any("measured", field_.measured);
     if (const RemovalTrace& t = field_.trace; !t.empty()) {
         length("trace.first", t.first);
@@ -149,6 +150,9 @@ void Look::numbers() {
     require(std::all_of(f.height_sd.begin(), f.height_sd.end(),
                         [](float sd) { return std::isfinite(sd) && sd >= 0.0F; }),
             "heightfield.deviations", "its standard deviations are no lengths");
+    require(std::all_of(f.height_error.begin(), f.height_error.end(),
+                        [](float error) { return std::isfinite(error) && error >= 0.0F; }),
+            "heightfield.errors", "the errors of its heights are no lengths");
     require(f.sd_freedom > 0.0, "heightfield.freedom",
             "the freedom of its standard deviations is not above 0");
     require(std::none_of(f.measured.begin(), f.measured.end(),

@@ -6,6 +6,7 @@
 #include "facts.h"
 #include "hdf5_files.h"
 #include "heightfield/sound_field.h"
+#include "heightfield/spread.h"
 
 namespace beltgrinding::python {
 namespace {
@@ -54,6 +55,7 @@ void bind_height_field(py::module_& m) {
         .BELTGRINDING_VIEW("stock_height", stock_height, float, 1)
         .BELTGRINDING_VIEW("height", height, double, 1)
         .BELTGRINDING_VIEW("height_sd", height_sd, float, 1)
+        .BELTGRINDING_VIEW("height_error", height_error, float, 1)
         .BELTGRINDING_VIEW("measured", measured, float, 1)
         .BELTGRINDING_VIEW("faces", face, std::uint32_t, 1)
         .BELTGRINDING_VIEW("flags", flags, std::uint8_t, 1)
@@ -161,6 +163,24 @@ void bind_height_field(py::module_& m) {
             "Standard deviation of every height, mm: the scale of Student's t with degrees of "
             "freedom, inf: of a normal distribution.")
         .def_readonly("sd_freedom", &HeightField::sd_freedom)
+        .def(
+            "set_height_error",
+            [](HeightField& field,
+               const py::array_t<float, py::array::c_style | py::array::forcecast>& given,
+               int rings) {
+                std::vector<float> error(given.data(), given.data() + given.size());
+                for (const float one : error) {
+                    if (!(one >= 0.0F) || std::isinf(one)) {
+                        throw InputError("call.height_error",
+                                         "the error of a height is no length of 0 or more");
+                    }
+                }
+                spread_largest(field, error, rings);
+                field.height_error = std::move(error);
+            },
+            py::arg("error"), py::arg("rings") = 0,
+            "Estimate of what the contact's cells leave open of every height, mm, 0 or more: each "
+            "the largest of the samples that up to so many sides of triangles lead to.")
         .def(
             "set_measured",
             [](HeightField& field, const std::vector<float>& measured) {

@@ -69,6 +69,7 @@ py::dict to_dict(const SimulationResult& result) {
     belt["loading"] = result.belt.loading;
     d["belt"] = belt;
     d["shifts"] = result.shifts;
+    d["unresolved"] = own(std::vector<float>(result.unresolved));
     d["process_time"] = result.process_time;
     d["removed_volume"] = result.removed_volume;
     d["integrated_rate"] = result.integrated_rate;

@@ -31,6 +31,7 @@ inline std::vector<Unsound> unsound() {
         {"'flags'", [](F& f) { f.flags.clear(); }},
         {"'rays'", [](F& f) { f.rays.assign(2, Vec3f::UnitZ()); }},
         {"'height_sd'", [](F& f) { f.height_sd.assign(f.size() + 1, 0.1F); }},
+        {"'height_error'", [](F& f) { f.height_error.assign(2, 0.1F); }},
         {"'measured'", [](F& f) { f.measured.assign(1, 0.0F); }},
         {"'trace.last'",
          [](F& f) {
@@ -54,6 +55,7 @@ inline std::vector<Unsound> unsound() {
              f.rays[4] = -f.rays[4];
          }},
         {"standard deviations", [](F& f) { f.height_sd.assign(f.size(), -1.0F); }},
+        {"errors of its heights", [](F& f) { f.height_error.assign(f.size(), NAN); }},
         {"measured heights", [](F& f) { f.measured.assign(f.size(), INFINITY); }},
         {"triangle",
          [](F& f) {

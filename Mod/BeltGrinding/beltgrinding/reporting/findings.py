@@ -401,8 +401,23 @@ def trust(content: Content, words: Language) -> Markup | None:
         table(heads, rows, "list doubts"),
         element("ul", [element("li", text) for text in told], class_="warnings") if told else None,
         _uncertainty(result.summary, words),
+        _cell_errors(result.summary, words),
         _convergence(content.convergence, words),
     )
+
+
+def _cell_errors(summary: Json, words: Language) -> Markup | None:
+    told = summary.get("cell_error_mm")
+    if told is None:
+        return None
+    text = words(
+        "The size of the contact's cells leaves heights open by up to {most} mm, mostly at edges; at 95 % of the "
+        "ground area by less than {p95} mm. At {share} of it that is more than a tenth of the depth.",
+        most=words.number(told["max"]),
+        p95=words.number(told["p95"]),
+        share=words.percent(told["coarse_area_share"]),
+    )
+    return element("p", text)
 
 
 def _uncertainty(summary: Json, words: Language) -> Markup:

@@ -22,7 +22,7 @@ from ..job.poses import program_name
 from ..job.settings import Job
 from ..job.typed import typed
 from ..job.workpiece import check_faces, make_stocked_field, read_design, shape_warnings
-from . import finish, heat, idle, last_door
+from . import cell_errors, finish, heat, idle, last_door
 from .checkpoints import RunCheckpoints
 from .result import Result
 
@@ -174,6 +174,7 @@ def _run(
         finish=finished,
     )
     shifts = np.zeros((field.size, len(given.shifted_laws)))
+    left: list[Floats] = []  # open by the contact's cells, by program
     checkpoints = RunCheckpoints(
         field,
         replace(given, heat=heat.plain(heated)),
@@ -220,6 +221,7 @@ def _run(
         lost += result["lost_volume"]
         given = replace(given, belt=result["belt"], first_motion=given.first_motion + len(path))
         shifts += result["shifts"]
+        left.append(result["unresolved"])
         models = {key: result[key] for key in ("compliance", "law")}
         for name, seconds in result["wall"].items():
             phases.seconds[name] = phases.seconds.get(name, 0.0) + seconds
@@ -230,8 +232,11 @@ def _run(
     phases.restart()
     if shifts.shape[1]:
         field.set_height_sd(np.sqrt((shifts**2).sum(axis=1)), laws.freedom(job.law))
+    cell_errors.estimate(job, field, left)
     events = event_lists.merge(found)
     summary = summarise(job, field, events)
+    summary.update(cell_errors.figures(job, field))
+    cell_errors.warn(summary, warnings)
     phases.end("inspect")
     summary.update(
         spacing_mm=job.sampling.spacing_mm,

@@ -240,6 +240,9 @@ struct SimulationResult {
     /// (samples, shifted laws): mm by which each shifted law would have removed more, at first
     /// order (the pressures as they are). Independent: they add up as squares.
     Eigen::ArrayXXd shifts;
+    /// mm by which every sample would be lowered further if the contact's cells were as fine as one
+    /// likes, at first order (the pressures as they are); negative: less far. Empty: not known.
+    std::vector<float> unresolved;
     double integrated_rate = 0.0;  ///< mm3, time integral of the law's rate
     Influence influence;  ///< of the path's motions, from that to its first pose; if asked for
     /// The same per relative change of the motion's force, the surface as it is: mm.

@@ -117,6 +117,7 @@ struct HeightField {
     std::vector<std::uint8_t> flags;  ///< bits of SampleFlag
     std::vector<Vec3f> rays;          ///< as `ray`; empty: all are the normals
     std::vector<float> height_sd;     ///< standard deviation of `height`, mm; empty: not known
+    std::vector<float> height_error;  ///< mm that the contact's cells leave open; empty: not known
     std::vector<float> measured;      ///< height of a scan, mm; NaN where it has none; empty: none
     RemovalTrace trace;               ///< what the simulation did where; empty: not known
     HeatTrace heat;                   ///< how hot it became where; empty: not computed

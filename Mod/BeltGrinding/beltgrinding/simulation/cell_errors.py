@@ -1,0 +1,81 @@
+"""How far a run's heights are off by the size of the contact's cells: an estimate at every sample, in every run.
+
+The engine extrapolates the rate of removal from cells of twice the length at every step (``unresolved``); the sum over
+the run, spread over a cell and with a margin, bounds the error. tests/validation/test_cell_errors.py measures how
+often it does.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ..base.kinds import Array, Facts, Floats, Json
+from ..engine import core
+from ..job.settings import Job
+from ..job.tolerances import narrowest_band
+from .convergence_record import BAND_SHARE, SHARE_LIMIT
+
+MARGIN = 1.25  # on an extrapolation, by Roache (convergence)
+DEPTH_SHARE = 0.1  # of the depth ground: errors above it are told
+SAMPLES_PER_CELL = 1.5  # that the engine keeps to at least
+
+
+def estimate(job: Job, field: core.HeightField, unresolved: Sequence[Floats]) -> None:
+    """Gives a ground field its ``height_error`` by ``unresolved``, (n,) mm of each program; of a rigid tool none."""
+    if not all(len(one) for one in unresolved):
+        return
+    cell = max(job.belt_machine.contact_spacing_mm, SAMPLES_PER_CELL * field.spacing)
+    field.set_height_error(
+        MARGIN * np.abs(np.sum(unresolved, axis=0)), math.ceil(cell / field.spacing)
+    )
+
+
+def figures(job: Job, field: core.HeightField) -> dict[str, Json]:
+    """What summary.json says of the errors; nothing where there are none."""
+    if not len(field.height_error):
+        return {}
+    ground = _ground(field)
+    error, areas = np.asarray(field.height_error)[ground], np.asarray(field.areas, float)[ground]
+    if not areas.sum() > 0.0:
+        return {}
+    coarse = error > least(job, field)[ground]
+    order = np.argsort(error)
+    above = np.searchsorted(np.cumsum(areas[order]), 0.95 * areas.sum())
+    told = {
+        "p95": float(error[order][min(above, len(error) - 1)]),
+        "max": float(error.max()),
+        "coarse_area_share": float(min(areas[coarse].sum() / areas.sum(), 1.0)),
+    }
+    return {"cell_error_mm": told}
+
+
+def least(job: Job, field: core.HeightField) -> Floats:
+    """(n,) mm: the errors above which a depth counts as coarse."""
+    lower, upper = narrowest_band(job.inspection)
+    depth = np.asarray(field.stock_height, float) - np.asarray(field.height)
+    return np.maximum(DEPTH_SHARE * depth, BAND_SHARE * (upper - lower))
+
+
+def warn(summary: dict[str, Any], warnings: Facts) -> None:
+    """Adds the warning that a summary's errors ask for."""
+    told = summary.get("cell_error_mm")
+    if told is None or told["coarse_area_share"] <= SHARE_LIMIT:
+        return
+    warnings.append(
+        core.Fact(
+            "simulation.coarse_cells",
+            "the contact's cells leave the depth open by more than a tenth at {share:.1f} % of the ground area, by up "
+            "to {most:.3f} mm, mostly at edges; lower belt_machine.contact_spacing_mm there, and sampling.spacing_mm",
+            share=100.0 * told["coarse_area_share"],
+            most=told["max"],
+        )
+    )
+
+
+def _ground(field: core.HeightField) -> Array:
+    seen = (np.asarray(field.flags) & core.MISSED) == 0
+    return seen & (np.asarray(field.stock_height, float) > np.asarray(field.height))

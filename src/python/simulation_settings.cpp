@@ -264,6 +264,7 @@ SimulationOptions options_from(const Record& input) {
         o.limits.lower.assign(limits.begin(), limits.end());
     }
     o.outputs.trace = input.get<bool>("trace");
+    o.outputs.cell_errors = input.get<bool>("cell_errors");
     o.outputs.influence = input.get<bool>("influence");
     o.outputs.force_influence = input.get<bool>("force_influence");
     o.outputs.first_motion = input.get<std::uint32_t>("first_motion");

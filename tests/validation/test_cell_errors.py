@@ -1,6 +1,8 @@
 """The error by the contact's cells that every run estimates, against runs with samples, steps and cells of a quarter or
 a half. Nothing in the estimate was fitted to any part."""
 
+import copy
+
 import numpy as np
 import pytest
 from support.reference_cases import LOOKING_DOWN, slab
@@ -90,7 +92,22 @@ def test_a_run_warns_of_what_its_cells_leave_open():
     told = result.summary["cell_error_mm"]
     assert told["max"] == pytest.approx(result.field.height_error.max())
     assert told["coarse_area_share"] > 0.05
-    assert "contact's cells leave" in " ".join(result.summary["warnings"])
+    # Left at 0.15 mm of 0.2, most is far above the tolerance, whatever the cells.
+    open_share = told["undecided_area_share"]
+    warned = "contact's cells leaves open" in " ".join(result.summary["warnings"])
+    assert warned == (open_share > cell_errors.UNDECIDED)
+    height = np.asarray(result.field.height)
+    middle = float(np.median(height[height < 0.199]))
+    job = copy.deepcopy(JOBS["stops 8 mm before the end"])
+    job["inspection"]["tolerance_mm"] = [middle - 0.001, middle + 0.001]
+    result = runs.run(load.validate(job), resume=False)
+    assert result.summary["cell_error_mm"]["undecided_area_share"] > max(open_share, 0.2)
+    assert "contact's cells leaves open" in " ".join(result.summary["warnings"])
+
+
+def test_a_plan_s_runs_estimate_nothing():
+    result = runs.run(JOBS["stops 8 mm before the end"], influence=True, resume=False)
+    assert len(result.field.height_error) == 0 and "cell_error_mm" not in result.summary
 
 
 def test_finer_cells_are_told_to_err_less():

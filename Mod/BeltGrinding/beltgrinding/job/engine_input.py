@@ -69,6 +69,7 @@ class EngineInput:
     must_touch: bool = True
     trace: bool = True
     first_motion: int = 0
+    cell_errors: bool = True
     influence: bool = False
     force_influence: bool = False
     lower_limits: np.ndarray[Any, np.dtype[np.float32]] | None = None  # mm

@@ -412,10 +412,10 @@ def _cell_errors(summary: Json, words: Language) -> Markup | None:
         return None
     text = words(
         "The size of the contact's cells leaves heights open by up to {most} mm, mostly at edges; at 95 % of the "
-        "ground area by less than {p95} mm. At {share} of it that is more than a tenth of the depth.",
+        "ground area by less than {p95} mm. Whether {share} of it is in tolerance it leaves open.",
         most=words.number(told["max"]),
         p95=words.number(told["p95"]),
-        share=words.percent(told["coarse_area_share"]),
+        share=words.percent(told["undecided_area_share"]),
     )
     return element("p", text)
 

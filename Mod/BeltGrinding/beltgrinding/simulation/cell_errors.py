@@ -15,12 +15,14 @@ import numpy as np
 
 from ..base.kinds import Array, Facts, Floats, Json
 from ..engine import core
+from ..inspection import verdict as verdicts
 from ..job.settings import Job
 from ..job.tolerances import narrowest_band
-from .convergence_record import BAND_SHARE, SHARE_LIMIT
+from .convergence_record import BAND_SHARE
 
 MARGIN = 1.25  # on an extrapolation, by Roache (convergence)
 DEPTH_SHARE = 0.1  # of the depth ground: errors above it are told
+UNDECIDED = 0.05  # of the ground area: more is warned of
 SAMPLES_PER_CELL = 1.5  # that the engine keeps to at least
 
 
@@ -45,10 +47,14 @@ def figures(job: Job, field: core.HeightField) -> dict[str, Json]:
     coarse = error > least(job, field)[ground]
     order = np.argsort(error)
     above = np.searchsorted(np.cumsum(areas[order]), 0.95 * areas.sum())
+    lower, upper = (limit[ground] for limit in verdicts.limits(job, field))
+    height = np.asarray(field.height)[ground]
+    nearest = np.minimum(abs(height - lower), abs(height - upper))
     told = {
         "p95": float(error[order][min(above, len(error) - 1)]),
         "max": float(error.max()),
-        "coarse_area_share": float(min(areas[coarse].sum() / areas.sum(), 1.0)),
+        "coarse_area_share": _share(areas, coarse),
+        "undecided_area_share": _share(areas, nearest <= error),
     }
     return {"cell_error_mm": told}
 
@@ -63,17 +69,20 @@ def least(job: Job, field: core.HeightField) -> Floats:
 def warn(summary: dict[str, Any], warnings: Facts) -> None:
     """Adds the warning that a summary's errors ask for."""
     told = summary.get("cell_error_mm")
-    if told is None or told["coarse_area_share"] <= SHARE_LIMIT:
+    if told is None or told["undecided_area_share"] <= UNDECIDED:
         return
     warnings.append(
         core.Fact(
             "simulation.coarse_cells",
-            "the contact's cells leave the depth open by more than a tenth at {share:.1f} % of the ground area, by up "
-            "to {most:.3f} mm, mostly at edges; lower belt_machine.contact_spacing_mm there, and sampling.spacing_mm",
-            share=100.0 * told["coarse_area_share"],
-            most=told["max"],
+            "the size of the contact's cells leaves open whether {share:.1f} % of the ground area is in tolerance, mostly at "
+            "edges; lower belt_machine.contact_spacing_mm and sampling.spacing_mm, or check the settings",
+            share=100.0 * told["undecided_area_share"],
         )
     )
+
+
+def _share(areas: Floats, which: Array) -> float:
+    return float(min(areas[which].sum() / areas.sum(), 1.0))
 
 
 def _ground(field: core.HeightField) -> Array:

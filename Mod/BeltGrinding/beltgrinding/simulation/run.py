@@ -58,7 +58,7 @@ def run(
     """Runs a validated job. Raises InputError for what the user must mend, Cancelled on cancel.
     ``recording``: an empty core.Recording that is to follow it, program after program; ``early(warnings)``: is called
     with a list of the first of its warnings before anything is ground; ``influence``: the result has a
-    core.Influence, what every motion of all programs removed where; ``forces``: and ``force_influence``, mm that each would
+    core.Influence, what every motion of all programs removed where, and no errors by the contact's cells; ``forces``: and ``force_influence``, mm that each would
     remove more per relative change of its force; ``shifts``: it has what laws would have removed
     more that are a standard deviation off (``law.shifted_laws``); ``resume``: it goes on from a state of an earlier run
     of this process, and keeps its own for later ones, which takes memory and a little time. A result that cannot be is
@@ -167,6 +167,7 @@ def _run(
     speed_effects = _speed_effects(given)
     given = replace(
         given,
+        cell_errors=not influence,  # a plan's runs, of which only the heights matter
         influence=influence,
         force_influence=forces,
         lower_limits=verdicts.lower_limits(job, field),

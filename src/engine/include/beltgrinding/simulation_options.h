@@ -177,7 +177,8 @@ struct OutputRequest {
     /// The law, moved by one standard deviation along each direction in which it is uncertain: for
     /// `SimulationResult::shifts`.
     std::vector<ShiftedLaw> shifted_laws = {};
-    bool influence = false;  ///< keep what every motion removed where
+    bool cell_errors = true;  ///< estimate what the contact's cells leave open
+    bool influence = false;   ///< keep what every motion removed where
     /// Keep what every motion would remove more where by more force, as far as its force is
     /// controlled.
     bool force_influence = false;

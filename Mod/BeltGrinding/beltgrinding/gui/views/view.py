@@ -12,7 +12,7 @@ from ...objects.proxy import Stateless
 from ..common import command_registry
 from ..common.compat import translate
 from ..common.icons import icon, qicon, stale_icon
-from ..common.kinds import Menu
+from ..common.kinds import Icon, Menu
 from ..common.redraw import Once, drawing
 from ..common.editing import edit
 
@@ -84,7 +84,7 @@ class View(Stateless):
         self.covered = covered
         drawing.now(self.view.Object.Document)
 
-    def getIcon(self) -> str:
+    def getIcon(self) -> str | Icon:
         """The object's; a marked one where its result is out of date."""
         view = getattr(self, "view", None)
         stale = view is not None and getattr(view.Object, "OutOfDate", False)

@@ -19,7 +19,7 @@ from ..common.compat import translate
 from ..common.icons import pale_icon, qicon
 from ..common.kinds import Icon, Menu
 from ..common.redraw import Once
-from ..scene import left_out, path_arrows, stock_shell
+from ..scene import cell_view, left_out, path_arrows, stock_shell
 from ..scene.legend import Legend
 from ..scene.part_context import design_key, points_of_part
 from .coloured_mesh_view import frame_selected, name_of
@@ -149,6 +149,17 @@ class StockView(View):
 class BeltMachineView(Undrawn):
     ICON = "BeltGrinding_BeltMachine"
     COMMANDS = ("BeltGrinding_Cell", "BeltGrinding_Belt", "BeltGrinding_Contact")
+
+    def attach(self, view: ViewObject) -> None:
+        if cell_view.SHOWN not in view.PropertiesList:
+            text = "show force, feed and the belt's travel as arrows where the cell is drawn"
+            view.addProperty("App::PropertyBool", cell_view.SHOWN, "Belt grinding", text)
+            setattr(view, cell_view.SHOWN, True)
+        super().attach(view)
+
+    def draw(self) -> None:
+        super().draw()
+        cell_view.redraw_loads(self.view.Object)
 
     def panel(self, obj: DocumentObject) -> Any:
         from ..panels.belt_machine_panel import BeltMachinePanel

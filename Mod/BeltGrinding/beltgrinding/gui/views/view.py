@@ -14,6 +14,7 @@ from ..common.compat import translate
 from ..common.icons import icon, qicon, stale_icon
 from ..common.kinds import Icon, Menu
 from ..common.redraw import Once, drawing
+from ..common.task_panel import take_keyboard
 from ..common.editing import edit
 
 if TYPE_CHECKING:
@@ -115,7 +116,9 @@ class View(Stateless):
     def setEdit(self, view: ViewObject, mode: int = 0) -> bool | None:
         if mode != 0:
             return None
-        Gui.Control.showDialog(self.panel(view.Object))
+        panel = self.panel(view.Object)
+        Gui.Control.showDialog(panel)
+        take_keyboard(panel.form)
         return True
 
     def unsetEdit(self, view: ViewObject, mode: int = 0) -> bool | None:

@@ -1,14 +1,16 @@
-"""A part of a panel that folds away under its title; folded, the title tells what is in it."""
+"""A box of a panel that folds away under its icon and title; folded, the title tells what is in it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 from ..common.compat import QtCore, QtGui
+from ..common.icons import qicon
 from ..common.kinds import Layout, QtEvent, Widget
 
 
 ARROW = 28  # pixels of a title's arrow and its frame
+ICON = 18  # pixels
 NARROW = (4, 9, 4, 4)  # pixels; FreeCAD's panels have margins of their own
 
 
@@ -18,8 +20,8 @@ def slim(form: Layout) -> None:
         box.layout().setContentsMargins(*NARROW)
 
 
-class Fold(QtGui.QWidget):
-    """``content``: the widget that is folded. ``summary()``: one line of what it holds, told beside the
+class Fold(QtGui.QFrame):
+    """``icon_name``: without "BeltGrinding_"; ``content``: the widget that is folded. ``summary()``: one line of what it holds, told beside the
     title while it is folded."""
 
     def __init__(
@@ -29,8 +31,10 @@ class Fold(QtGui.QWidget):
         content: Widget | Layout,
         summary: Callable[[], str] = lambda: "",
         folded: bool = False,
+        icon_name: str = "",
     ) -> None:
         super().__init__()
+        self.setFrameShape(QtGui.QFrame.StyledPanel)
         self.title, self.summary, self.content = title, summary, content
         layout = QtGui.QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
@@ -44,7 +48,15 @@ class Fold(QtGui.QWidget):
         self.head.clicked.connect(lambda: self.fold(not self.content.isHidden()))
         if isinstance(content, QtGui.QGroupBox):
             content.setFlat(True)
-        layout.addWidget(self.head)
+        row = QtGui.QHBoxLayout()
+        row.setSpacing(0)
+        if icon_name:
+            row.setContentsMargins(ICON // 4, 0, 0, 0)
+            picture = QtGui.QLabel()
+            picture.setPixmap(qicon(f"BeltGrinding_{icon_name}").pixmap(ICON, ICON))
+            row.addWidget(picture)
+        row.addWidget(self.head, 1)
+        layout.addLayout(row)
         layout.addWidget(content)
         self.fold(folded)
 
@@ -65,7 +77,7 @@ class Fold(QtGui.QWidget):
         """The title, and what it tells on a line of its own where one is too narrow for both."""
         text = self.told
         self.head.ensurePolished()  # or its letters are not bold yet
-        if self.head.fontMetrics().horizontalAdvance(text) + ARROW > self.width():
+        if self.head.fontMetrics().horizontalAdvance(text) + ARROW > self.head.width():
             text = text.replace(": ", ":\n", 1)
         if text != self.head.text():
             self.head.setText(text)

@@ -108,7 +108,6 @@ def test_tab_reaches_every_control_in_the_order_of_reading():
 
     def look(name, form):
         settle()
-        open("/tmp/kb.txt", "a").write(f"{name}\n")
         if found := unreachable(form):
             unreached[name] = found
         if found := out_of_order(form):
@@ -154,5 +153,4 @@ def test_tab_reaches_every_control_in_the_order_of_reading():
                 look(dock.objectName(), dock.widget())
                 dock.close()
         settle()
-    open("/tmp/kb.txt", "a").write(f"{unreached}\n{disordered}\n")
     assert not unreached and not disordered, (unreached, disordered)

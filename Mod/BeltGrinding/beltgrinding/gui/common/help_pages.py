@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from .keyboard import space_presses
 from .kinds import Widget
 
 PROPERTY = "beltGrindingPage"  # of a panel's form, or a dock
@@ -46,7 +47,8 @@ PAGES = {  # name of a command, whose icon a panel bears: page of docs/
 
 
 def helped(widget: Widget, icon_name: str) -> None:
-    """Gives a panel's form, or a dock, its page."""
+    """Gives a panel's form, or a dock, its page; Space presses its buttons."""
+    space_presses(widget)
     widget.setProperty(PROPERTY, PAGES[icon_name.partition("_")[2]])
 
 

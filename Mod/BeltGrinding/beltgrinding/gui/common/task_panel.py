@@ -8,9 +8,8 @@ import FreeCAD
 import FreeCADGui as Gui
 
 from ...objects.kinds import Document, DocumentObject
-from ...objects.living import GONE
 from .compat import QtCore
-from .kinds import Widget
+from .keyboard import take_keyboard
 
 
 class _Watch:
@@ -42,20 +41,6 @@ class _Watch:
         if self.watching:
             self.watching = False
             FreeCAD.removeDocumentObserver(self)
-
-
-def take_keyboard(form: Widget) -> None:
-    """Gives a panel the keyboard: the next Tab goes to its first field. FreeCAD leaves it in the 3D view, which keeps Tab
-    for itself. The form itself takes it, so that no field changes under the mouse's wheel."""
-    form.setFocusPolicy(QtCore.Qt.ClickFocus)
-
-    def focus() -> None:
-        try:
-            form.setFocus()
-        except GONE:
-            pass  # closed again
-
-    QtCore.QTimer.singleShot(0, focus)  # once it is shown
 
 
 def show_panel(panel: Any, obj: DocumentObject) -> None:

@@ -14,7 +14,7 @@ from ..common.compat import translate
 from ..common.icons import icon, qicon, stale_icon
 from ..common.kinds import Icon, Menu
 from ..common.redraw import Once, drawing
-from ..common.task_panel import take_keyboard
+from ..common.keyboard import take_keyboard
 from ..common.editing import edit
 
 if TYPE_CHECKING:

@@ -10,10 +10,11 @@ import FreeCADGui as Gui
 import Mesh
 import Part
 from PySide import QtCore, QtGui
+from pivy import coin
 
 from beltgrinding.gui.common import theme as themes
 from beltgrinding.gui.common.icons import media_icon
-from beltgrinding.gui.scene import path_arrows, stock_shell
+from beltgrinding.gui.scene import path_arrows, stock_lines, stock_shell
 from beltgrinding.gui.scene.cell_view import CellView
 from beltgrinding.gui.scene.part_context import tessellated
 from beltgrinding.gui.scene.sight import Sight
@@ -337,3 +338,90 @@ def test_the_mouse_over_the_surface_or_a_click_on_it_changes_no_colour():
     click_at(*at)
     assert [one.Name for one in Gui.Selection.getSelection()] == ["Deviation"]
     assert colours() == before
+
+
+def test_tint_and_shell_are_blended_and_a_solid_stocks_edges_are_dashed():
+    """In the order of drawing: the tint last, at once and without depth; hidden edges of a stock dashed, others not."""
+    job, doc, view = prepared()
+    view.viewIsometric()
+    view.fitAll()
+    scene = view.getSceneGraph()
+    bare = seen("bare.png", view)
+    job.ViewObject.Proxy.doubleClicked(job.ViewObject)
+    settle()
+    tints = nodes_of(scene, coin.SoTransparencyType)
+    assert [one.value.getValue() for one in tints] == [coin.SoTransparencyType.BLEND]
+    assert not [
+        one for one in nodes_of(scene, coin.SoDepthBuffer) if one.getField("write").getValue()
+    ]
+    shell = doc.Stock.ViewObject.Proxy.shell
+    assert shell.whichChild.getValue() == -3
+    # The face is seen through tint and shell: in one tone, wherever it is looked at, and in none of before.
+    tinted = seen("tinted.png", view)
+    assert len(set(tinted)) == 1 and tinted[0] != bare[0], (tinted, bare)
+    doc.Stock.ViewObject.Visibility = False
+    settle()
+    through = seen("through.png", view)
+    assert len(set(through)) == 1 and through[0] != tinted[0], (through, tinted)
+    assert through[0][1] > through[0][0], through  # the tint is green, the part's face is not
+    doc.Stock.ViewObject.Visibility = True
+    press("Cancel")
+    assert seen("after.png", view) == bare
+    assert not nodes_of(scene, coin.SoTransparencyType)
+
+    # A solid stock: its edges twice, in front of everything whole, behind it dashed.
+    solid = doc.addObject("Part::Feature", "Casting")
+    solid.Shape = Part.makeBox(64, 44, 22, FreeCAD.Vector(-2, -2, -1))
+    doc.recompute()
+    doc.Stock.Kind, doc.Stock.Source = "solid", solid
+    doc.recompute()
+    job.ViewObject.Proxy.doubleClicked(job.ViewObject)
+    settle()
+    depths = [one for one in nodes_of(scene, coin.SoDepthBuffer) if one.function.getValue()]
+    found = {}
+    for depth in depths:
+        parent = above(scene, depth)
+        for style in nodes_of(parent, coin.SoDrawStyle):
+            if style.lineWidth.getValue() == stock_lines.WIDTH:
+                found[depth.function.getValue()] = style.linePattern.getValue()
+    assert found == {
+        coin.SoDepthBuffer.LEQUAL: 0xFFFF,
+        coin.SoDepthBuffer.GREATER: stock_lines.DASHES,
+    }, found
+    press("Cancel")
+    assert not [
+        one
+        for one in nodes_of(scene, coin.SoDepthBuffer)
+        if one.function.getValue() == coin.SoDepthBuffer.GREATER
+    ]
+
+
+def nodes_of(root, kind):
+    """The nodes of a kind below a node, in the order of drawing."""
+    search = coin.SoSearchAction()
+    search.setType(kind.getClassTypeId())
+    search.setInterest(coin.SoSearchAction.ALL)
+    search.apply(root)
+    paths = search.getPaths()
+    return [paths[k].getTail() for k in range(paths.getLength())]
+
+
+def above(root, node):
+    """The group that holds a node."""
+    search = coin.SoSearchAction()
+    search.setNode(node)
+    search.apply(root)
+    return search.getPath().getNodeFromTail(1)
+
+
+def seen(name, view):
+    """Colours of the view at places of the block's upper face, from edge to edge."""
+    settle()
+    width, height = view.getSize()
+    view.saveImage(name, width, height, "White")
+    image = QtGui.QImage(name)
+    found = []
+    for x, y in ((12, 8), (30, 32), (48, 10), (20, 20), (52, 34)):
+        a, b = view.getPointOnScreen(FreeCAD.Vector(x, y, 20))
+        found.append(image.pixelColor(int(a), height - 1 - int(b)).getRgb()[:3])
+    return found

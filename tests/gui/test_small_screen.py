@@ -18,7 +18,8 @@ def test_a_dark_theme_keeps_the_buttons(tmp_path, monkeypatch):
     if not DARK.exists():
         pytest.skip("this FreeCAD has no such theme")
     monkeypatch.setattr(windows, "SCREEN", "-screen 0 1366x768x24")
-    windows.FreeCad(tmp_path).call(look, window=True, fresh=True)
+    freecad = windows.FreeCad(tmp_path)
+    freecad.call(look, window=True, fresh=True)
 
 
 def look():

@@ -421,7 +421,7 @@ def seen(name, view):
     view.saveImage(name, width, height, "White")
     image = QtGui.QImage(name)
     found = []
-    for x, y in ((12, 8), (30, 32), (48, 10), (20, 20), (52, 34)):
+    for x, y in ((12, 8), (30, 32), (48, 10), (20, 12), (52, 34)):
         a, b = view.getPointOnScreen(FreeCAD.Vector(x, y, 20))
         found.append(image.pixelColor(int(a), height - 1 - int(b)).getRgb()[:3])
     return found

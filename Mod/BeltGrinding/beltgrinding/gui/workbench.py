@@ -75,13 +75,12 @@ def fit_toolbars() -> None:
     if window.width() < SMALL_SCREEN or not bars:
         return
     top = min(bar.y() for bar in bars)
-    ours = {FreeCAD.Qt.translate("Workbench", title) for title in _titles}
     for bar in bars:
         first_row = sorted((one for one in bars if one.y() == top), key=lambda one: one.x())
         last = first_row[-1]
         room = window.width() - last.x() - last.sizeHint().width()
         lacks = bar.sizeHint().width() > bar.width() and bar not in first_row
-        if bar.windowTitle() in ours and lacks and bar.sizeHint().width() <= room:
+        if bar.objectName() in _titles and lacks and bar.sizeHint().width() <= room:
             window.insertToolBar(last, bar)
             window.insertToolBar(bar, last)
             window.layout().activate()

@@ -19,6 +19,7 @@ PAGES = {  # name of a command, whose icon a panel bears: page of docs/
     "ExportJob": "workbench-export.md",
     "ExportProgram": "workbench-programs.md",
     "Figures": "workbench-export.md",
+    "FiguresPage": "workbench-export.md",
     "FollowPath": "workbench-programs.md",
     "GrindFaces": "planning.md",
     "GroundMesh": "ground-mesh.md",

@@ -11,16 +11,18 @@ from ..common.kinds import Layout, QtEvent, Widget
 
 ARROW = 28  # pixels of a title's arrow and its frame
 ICON = 18  # pixels
+UNDER_TITLE = (0, 4, 0, 4)  # pixels
 NARROW = (4, 9, 4, 4)  # pixels; FreeCAD's panels have margins of their own
 
 
 def slim(form: Layout) -> None:
     """Takes the margins of a panel's boxes in: the dock, as FreeCAD opens it on a small screen, is narrow."""
     for box in (form, *form.findChildren(QtGui.QGroupBox)):
-        box.layout().setContentsMargins(*NARROW)
+        folds = isinstance(box.parentWidget(), Fold)  # whose title stands above it
+        box.layout().setContentsMargins(*(UNDER_TITLE if folds else NARROW))
 
 
-class Fold(QtGui.QFrame):
+class Fold(QtGui.QWidget):
     """``icon_name``: without "BeltGrinding_"; ``content``: the widget that is folded. ``summary()``: one line of what it holds, told beside the
     title while it is folded."""
 
@@ -34,7 +36,6 @@ class Fold(QtGui.QFrame):
         icon_name: str = "",
     ) -> None:
         super().__init__()
-        self.setFrameShape(QtGui.QFrame.StyledPanel)
         self.title, self.summary, self.content = title, summary, content
         layout = QtGui.QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)

@@ -79,6 +79,7 @@ def test_a_curved_platen_is_entered_and_drawn():
     type_in("PlatenRadius", "90 mm")
     settle()
     assert field("machineDrawing").grab().toImage() != flat
+    field("foldFrame").click()
     assert not shown("FrameSpread") and not shown("FrameArmSides")
     type_in("FrameLength", "10 mm")
     press("OK")  # the rollers' radius is 25

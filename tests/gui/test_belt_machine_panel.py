@@ -161,6 +161,7 @@ def test_a_preset_makes_it_a_free_belt_that_is_drawn_in_the_cell():
     machine.Kind = "small_wheel"
     doc.recompute()
     menu("Belt machine")
+    field("foldFork").click()
     assert shown("WheelRadius") and shown("ForkLength") and not shown("RunLength")
     small = drawn()
     type_in("ForkLength", "30 mm")  # the wheel's radius is 60
@@ -198,6 +199,8 @@ def test_the_force_device_has_its_fields():
     job = prepare()
     machine = job.Document.BeltMachine
     menu("Belt machine")
+    assert not shown("ForceDevice")
+    field("foldDevice").click()
     assert shown("ForceDevice") and not shown("DeviceName") and not shown("DeviceLeast")
     choose_in("ForceDevice", "Analog output")
     assert shown("DeviceName") and shown("DeviceOutput") and shown("DeviceRamp")

@@ -30,7 +30,7 @@ from support.hands import (
 from support.restoring import patch
 
 pytestmark = pytest.mark.freecad(window=True)
-MENUS = ["Machine", "Programs", "Plan and study", "Results", "Exchange", "Examples"]
+MENUS = ["Machine", "Programs", "Plan and study", "Results", "Exchange"]
 
 
 def prepared():

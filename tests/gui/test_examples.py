@@ -13,6 +13,7 @@ from support import animation, tutorial
 from support import pictures, synthetic_finish
 from support.hands import (
     choose,
+    example,
     field,
     menu,
     picture,
@@ -78,7 +79,7 @@ def prepared():
 @pytest.mark.freecad(window=True, fresh=True)
 def test_the_tap():
     prepared()
-    menu("Example: mixer tap")
+    example("Mixer tap")
     doc = ground((-0.75, 0.55, -0.45))
     assert 85 < float(tutorial.statistics()["In tolerance"].split()[0]) < 95
     picture("example-tap")
@@ -102,7 +103,7 @@ def test_the_tap():
 @pytest.mark.freecad(window=True, fresh=True)
 def test_the_tap_on_a_free_belt():
     prepared()
-    menu("Example: tap spout on a free belt")
+    example("Tap spout on a free belt")
     doc = ground((-0.75, 0.55, -0.45))
     assert 65 < float(tutorial.statistics()["In tolerance"].split()[0]) < 85
     picture("example-tap-belt")
@@ -113,7 +114,7 @@ def test_the_tap_on_a_free_belt():
 @pytest.mark.freecad(window=True, fresh=True)
 def test_the_blade_with_fillet_and_edges():
     prepared()
-    menu("Example: blade with fillet and edges")
+    example("Blade with fillet and edges")
     doc = ground((0.85, -0.6, -0.35))
     assert 85 < float(tutorial.statistics()["In tolerance"].split()[0]) < 95
     picture("example-vane")
@@ -124,7 +125,7 @@ def test_the_blade_with_fillet_and_edges():
 @pytest.mark.freecad(window=True, fresh=True)
 def test_the_edges_of_a_blade():
     prepared()
-    menu("Example: edges of a compressor blade")
+    example("Edges of a compressor blade")
     ground((0.85, -0.6, -0.35))
     press("OK")
     menu("Verdict")
@@ -138,7 +139,7 @@ def test_the_edges_of_a_blade():
 @pytest.mark.freecad(window=True, fresh=True)
 def test_the_knife():
     prepared()
-    menu("Example: chef's knife")
+    example("Chef's knife")
     doc = ground((-0.5, 0.8, -0.4))
     assert 90 < float(tutorial.statistics()["In tolerance"].split()[0]) < 98
     picture("example-knife")
@@ -149,7 +150,7 @@ def test_the_knife():
 @pytest.mark.freecad(window=True, fresh=True)
 def test_the_blades_temperatures():
     prepared()
-    menu("Example: compressor blade")
+    example("Compressor blade")
     job = FreeCAD.ActiveDocument.BeltGrindingJob
     job.ViewObject.Proxy.doubleClicked(job.ViewObject)
     settle()
@@ -171,7 +172,7 @@ def test_the_blades_temperatures():
 @pytest.mark.freecad(window=True, fresh=True)
 def test_the_blades_finish():
     prepared()
-    menu("Example: compressor blade")
+    example("Compressor blade")
     job = FreeCAD.ActiveDocument.BeltGrindingJob
     job.ViewObject.Proxy.doubleClicked(job.ViewObject)
     settle()

@@ -1,6 +1,7 @@
 """What a job looks like: cameras with a line of sight, paths with arrows, stock, theme, icons."""
 
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,10 +10,11 @@ import FreeCADGui as Gui
 import Mesh
 import Part
 from PySide import QtCore, QtGui
+from pivy import coin
 
 from beltgrinding.gui.common import theme as themes
-from beltgrinding.gui.common.icons import icon, media_icon, stale_icon
-from beltgrinding.gui.scene import path_arrows, stock_shell
+from beltgrinding.gui.common.icons import media_icon
+from beltgrinding.gui.scene import path_arrows, stock_lines, stock_shell
 from beltgrinding.gui.scene.cell_view import CellView
 from beltgrinding.gui.scene.part_context import tessellated
 from beltgrinding.gui.scene.sight import Sight
@@ -218,27 +220,30 @@ def test_a_mesh_is_the_part_of_a_job():
 
 
 def test_what_is_out_of_date_keeps_its_icon():
-    start()
-    for name in ("BeltGrinding_GroundMesh", "BeltGrinding_Verdict", "BeltGrinding_Simulate"):
-        own, stale = (
-            QtGui.QIcon(path).pixmap(64, 64).toImage()
-            if path.endswith("png")
-            else Gui.getIcon(path).pixmap(64, 64).toImage()
-            for path in (icon(name), stale_icon(name))
-        )
-        assert stale.width() == 64
-        same = [
+    _, doc, _ = prepared()
+    before = set(Path(FreeCAD.getTempPath()).glob("BeltGrinding_*"))
+    menu("Simulate")
+    wait(lambda: doc.getObject("Simulation") is not None)
+    press("Close")
+    own = doc.Simulation.ViewObject.Icon.pixmap(64, 64).toImage()
+    doc.BeltMachine.Force = "25 N"
+    doc.recompute()
+    settle()
+    assert doc.Simulation.OutOfDate
+    stale = doc.Simulation.ViewObject.Icon.pixmap(64, 64).toImage()  # as FreeCAD's tree has it
+    assert own.width() == stale.width() == 64
+
+    def same(first, last):
+        return [
             own.pixelColor(x, y) == stale.pixelColor(x, y)
-            for x in range(0, 22)
-            for y in range(0, 22)
+            for x in range(first, last)
+            for y in range(first, last)
         ]
-        assert all(same)  # its upper left is the icon's own
-        other = [
-            own.pixelColor(x, y) != stale.pixelColor(x, y)
-            for x in range(30, 64)
-            for y in range(30, 64)
-        ]
-        assert sum(other) > 300
+
+    assert all(same(0, 22))  # its upper left is the icon's own
+    assert same(30, 64).count(False) > 300
+    # They stay in memory: a file of the temporary folder may be another user's, and stays behind.
+    assert set(Path(FreeCAD.getTempPath()).glob("BeltGrinding_*")) == before
     for name in ("play", "pause", "next", "previous"):
         assert not media_icon(name).isNull()
 
@@ -333,3 +338,90 @@ def test_the_mouse_over_the_surface_or_a_click_on_it_changes_no_colour():
     click_at(*at)
     assert [one.Name for one in Gui.Selection.getSelection()] == ["Deviation"]
     assert colours() == before
+
+
+def test_tint_and_shell_are_blended_and_a_solid_stocks_edges_are_dashed():
+    """In the order of drawing: the tint last, at once and without depth; hidden edges of a stock dashed, others not."""
+    job, doc, view = prepared()
+    view.viewIsometric()
+    view.fitAll()
+    scene = view.getSceneGraph()
+    bare = seen("bare.png", view)
+    job.ViewObject.Proxy.doubleClicked(job.ViewObject)
+    settle()
+    tints = nodes_of(scene, coin.SoTransparencyType)
+    assert [one.value.getValue() for one in tints] == [coin.SoTransparencyType.BLEND]
+    assert not [
+        one for one in nodes_of(scene, coin.SoDepthBuffer) if one.getField("write").getValue()
+    ]
+    shell = doc.Stock.ViewObject.Proxy.shell
+    assert shell.whichChild.getValue() == -3
+    # The face is seen through tint and shell: in one tone, wherever it is looked at, and in none of before.
+    tinted = seen("tinted.png", view)
+    assert len(set(tinted)) == 1 and tinted[0] != bare[0], (tinted, bare)
+    doc.Stock.ViewObject.Visibility = False
+    settle()
+    through = seen("through.png", view)
+    assert len(set(through)) == 1 and through[0] != tinted[0], (through, tinted)
+    assert through[0][1] > through[0][0], through  # the tint is green, the part's face is not
+    doc.Stock.ViewObject.Visibility = True
+    press("Cancel")
+    assert seen("after.png", view) == bare
+    assert not nodes_of(scene, coin.SoTransparencyType)
+
+    # A solid stock: its edges twice, in front of everything whole, behind it dashed.
+    solid = doc.addObject("Part::Feature", "Casting")
+    solid.Shape = Part.makeBox(64, 44, 22, FreeCAD.Vector(-2, -2, -1))
+    doc.recompute()
+    doc.Stock.Kind, doc.Stock.Source = "solid", solid
+    doc.recompute()
+    job.ViewObject.Proxy.doubleClicked(job.ViewObject)
+    settle()
+    depths = [one for one in nodes_of(scene, coin.SoDepthBuffer) if one.function.getValue()]
+    found = {}
+    for depth in depths:
+        parent = above(scene, depth)
+        for style in nodes_of(parent, coin.SoDrawStyle):
+            if style.lineWidth.getValue() == stock_lines.WIDTH:
+                found[depth.function.getValue()] = style.linePattern.getValue()
+    assert found == {
+        coin.SoDepthBuffer.LEQUAL: 0xFFFF,
+        coin.SoDepthBuffer.GREATER: stock_lines.DASHES,
+    }, found
+    press("Cancel")
+    assert not [
+        one
+        for one in nodes_of(scene, coin.SoDepthBuffer)
+        if one.function.getValue() == coin.SoDepthBuffer.GREATER
+    ]
+
+
+def nodes_of(root, kind):
+    """The nodes of a kind below a node, in the order of drawing."""
+    search = coin.SoSearchAction()
+    search.setType(kind.getClassTypeId())
+    search.setInterest(coin.SoSearchAction.ALL)
+    search.apply(root)
+    paths = search.getPaths()
+    return [paths[k].getTail() for k in range(paths.getLength())]
+
+
+def above(root, node):
+    """The group that holds a node."""
+    search = coin.SoSearchAction()
+    search.setNode(node)
+    search.apply(root)
+    return search.getPath().getNodeFromTail(1)
+
+
+def seen(name, view):
+    """Colours of the view at places of the block's upper face, from edge to edge."""
+    settle()
+    width, height = view.getSize()
+    view.saveImage(name, width, height, "White")
+    image = QtGui.QImage(name)
+    found = []
+    for x, y in ((12, 8), (30, 32), (48, 10), (20, 12), (52, 34)):
+        a, b = view.getPointOnScreen(FreeCAD.Vector(x, y, 20))
+        found.append(image.pixelColor(int(a), height - 1 - int(b)).getRgb()[:3])
+    return found

@@ -16,6 +16,7 @@ from beltgrinding.calibration import calibrate as calibration, plot as calibrati
 from beltgrinding.gui.scene.camera import look_at
 from support import pictures
 from support.hands import (
+    example,
     field,
     menu,
     picture,
@@ -52,10 +53,10 @@ def pixels(name, at=None):
     return rows[:, : 3 * image.width()].reshape(-1, 3).astype(int)
 
 
-def example():
+def blade():
     Gui.activateWorkbench("BeltGrindingWorkbench")
     whole_screen()
-    menu("Example: compressor blade")
+    example("Compressor blade")
     doc = FreeCAD.ActiveDocument
     job = doc.BeltGrindingJob
     view = Gui.ActiveDocument.ActiveView
@@ -81,7 +82,7 @@ def test_every_picture_of_the_manual_is_made_by_one_test():
 @pytest.mark.slow
 @pytest.mark.freecad(window=True, fresh=True)
 def test_setting_up():
-    here = example()
+    here = blade()
     doc, job = here.doc, here.job
     edit(job)
     face = job.DesignFaces[0][1][0]
@@ -132,7 +133,7 @@ def test_setting_up():
 @pytest.mark.slow
 @pytest.mark.freecad(window=True, fresh=True)
 def test_results():
-    here = example()
+    here = blade()
     doc, view = here.doc, here.view
     menu("Simulate")
     wait(lambda: "in tolerance" in field("state").text(), 200)
@@ -214,7 +215,7 @@ def test_results():
 )
 @pytest.mark.freecad(window=True, fresh=True)
 def test_the_ground_part_and_its_scan():
-    here = example()
+    here = blade()
     doc, job = here.doc, here.job
     doc.RobotPath.ViewObject.Visibility = False
     said = job.LawCoefficient
@@ -253,7 +254,7 @@ def test_the_ground_part_and_its_scan():
 @pytest.mark.slow
 @pytest.mark.freecad(window=True, fresh=True)
 def test_uncertainty():
-    here = example()
+    here = blade()
     doc, job, simulated = here.doc, here.job, here.simulated
     job.Law, job.WearModel, job.WearScale = "local", "exponential", 40000
     calibration = {

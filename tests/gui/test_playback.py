@@ -9,8 +9,10 @@ import FreeCAD
 import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
+from beltgrinding.gui.scene import cell_view
 from support.hands import field, menu, press, settle, wait, widgets
 from support.playing import brown, prepared, record
+from support.restoring import patch
 
 pytestmark = pytest.mark.freecad(window=True)
 
@@ -40,6 +42,9 @@ def test_a_recording_is_played_and_leaves_the_document_as_it_was():
     slider = field("timeSlider")
     assert np.allclose(wheel(), [10, 20, 20.2]) and scene.frame == 0
     scene.cell.things["contact"].removeAllChildren()  # the wheel covers what it grinds
+    patch(
+        cell_view.CellView, "draw_loads", lambda cell: cell.loads.removeAllChildren()
+    )  # arrows, too
     slider.setValue(0)
     before = brown("before.png")
     assert before > 10000, before

@@ -121,6 +121,7 @@ def test_passes_on_what_a_result_has_left():
     path = doc.RasterPath
     note = field("note").text()
     wait(lambda: path.PassCount > 0)
+    field("foldRegion").click()
     field("regionLeft").click()  # nothing has been simulated
     assert "simulate first" in field("note").text(), field("note").text()
     press("Cancel")
@@ -184,6 +185,7 @@ def test_what_is_left_out_is_coloured():
     menu("Raster path...")
     path = doc.RasterPath
     wait(lambda: path.PassCount > 0)
+    field("foldPoses").click()
     field("WhereItCollides").setCurrentIndex(1)
     field("Along").setCurrentIndex(2)
     type_in("Direction_x", "0")
@@ -203,6 +205,7 @@ def test_what_is_left_out_is_coloured():
     path = doc.RasterPath001
     wait(lambda: path.PassCount > 0)
     assert path.GroundLength.Value > 0 and not path.RegionPoints
+    field("foldRegion").click()
     field("regionOthers").click()
     assert path.RegionPoints, field("note").text()
     assert {tuple(p) for p in path.RegionPoints} == {tuple(p) for p in first.LeftPoints}

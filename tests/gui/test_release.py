@@ -11,7 +11,7 @@ import FreeCADGui as Gui
 
 import beltgrinding
 from support.freecad import FreeCad, ROOT
-from support.hands import field, menu, wait
+from support.hands import example, field, menu, wait
 
 BUILD = ROOT / "build" / "release"
 
@@ -37,7 +37,7 @@ def test_an_unpacked_release_grinds_the_example(content, tmp_path):
 
 def ground_by(mod):
     Gui.activateWorkbench("BeltGrindingWorkbench")
-    menu("Example: compressor blade")
+    example("Compressor blade")
     doc = FreeCAD.ActiveDocument
     menu("Simulate")
     wait(lambda: doc.getObject("Simulation") is not None, 200)

@@ -15,6 +15,7 @@ from beltgrinding.simulation import run as jobs
 from support.hands import (
     bury,
     choose,
+    example,
     field,
     menu,
     prepare,
@@ -288,9 +289,9 @@ def test_a_panel_closed_while_it_computes_leaves_nothing():
         assert doc.getObject("Simulation") is None, name
 
 
-def test_the_menu_offers_the_example():
+def test_the_dock_of_examples_sets_one_up():
     start()
-    menu("Example: compressor blade")
+    example("Compressor blade")
     doc = FreeCAD.ActiveDocument
     assert [o.Label for o in doc.BeltGrindingJob.Group] == [
         "Stock",

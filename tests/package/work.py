@@ -24,7 +24,7 @@ def work():
     mod = Path(beltgrinding.__file__).resolve().parents[1]
     assert mod.parts[-2:] == ("Mod", "BeltGrinding"), mod
     assert Path(beltgrinding.core.__file__).parent.samefile(mod), beltgrinding.core.__file__
-    hands.menu("Example: mixer tap")
+    hands.example("Mixer tap")
     doc = FreeCAD.ActiveDocument
     hands.menu("Simulate")
     hands.wait(lambda: doc.getObject("Simulation") is not None, 600)

@@ -75,6 +75,16 @@ def menu(text):
     settle()
 
 
+def example(title):
+    """Sets up an example by the dock of the examples."""
+    menu("Examples...")
+    shown = field("examples", QtGui.QTreeWidget)
+    (item,) = shown.findItems(title, QtCore.Qt.MatchExactly | QtCore.Qt.MatchRecursive)
+    shown.setCurrentItem(item)
+    press("Set up")
+    bury()
+
+
 def entries(action):
     """The entries of an action's menu, those of its submenus too."""
     for one in action.menu().actions():
@@ -180,6 +190,17 @@ def strike(widget, key):
     for kind in (QtCore.QEvent.KeyPress, QtCore.QEvent.KeyRelease):
         event = QtGui.QKeyEvent(kind, ord(key.upper()), QtCore.Qt.NoModifier, key)
         QtGui.QApplication.sendEvent(widget, event)
+    settle()
+
+
+def key(code, modifiers=QtCore.Qt.NoModifier, text=""):
+    """Strikes a key, of Qt, where the keyboard's focus is."""
+    window.activateWindow()
+    settle()
+    for kind in (QtCore.QEvent.KeyPress, QtCore.QEvent.KeyRelease):
+        widget = QtGui.QApplication.focusWidget()
+        if widget is not None:
+            QtGui.QApplication.sendEvent(widget, QtGui.QKeyEvent(kind, code, modifiers, text))
     settle()
 
 

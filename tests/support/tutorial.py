@@ -17,7 +17,7 @@ def walk():
     figures = {}
     Gui.activateWorkbench("BeltGrindingWorkbench")
     hands.whole_screen()
-    hands.menu("Example: compressor blade")
+    hands.example("Compressor blade")
     doc = FreeCAD.ActiveDocument
     view = Gui.ActiveDocument.ActiveView
     view.setAnimationEnabled(False)

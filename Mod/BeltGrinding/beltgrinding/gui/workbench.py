@@ -16,13 +16,17 @@ import FreeCADGui as Gui
 from ..base.resources import resources
 from ..objects import waiting
 from . import languages
-from .common.compat import QtGui
+from .common.compat import QtCore, QtGui
 from .common.icons import icon
 from .common.kinds import Context
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 NAME = QT_TRANSLATE_NOOP("Workbench", "Belt grinding")
 MENU = QT_TRANSLATE_NOOP("Workbench", "&Belt grinding")
+
+
+SMALL_SCREEN = 1300  # pixels
+_titles: list[str] = []  # of the toolbars
 
 
 def describe(workbench: Any) -> None:
@@ -42,6 +46,7 @@ def fill(workbench: Any) -> list[str]:
     from . import start
 
     toolbars, menu = start.register()
+    _titles[:] = toolbars
     for title, names in toolbars.items():
         workbench.appendToolbar(title, names)
     if toolbars:
@@ -58,6 +63,27 @@ def activated() -> None:
     from .command_help import commands_help
 
     commands_help.watch()
+    QtCore.QTimer.singleShot(0, fit_toolbars)
+
+
+def fit_toolbars() -> None:
+    """Puts toolbars of ours whose buttons do not all show to the end of the first row, where that has room: wide themes
+    need more than a row of a small screen. In a window that is no screen wide they stay, as it may grow.
+    """
+    window = Gui.getMainWindow()
+    bars = [bar for bar in window.findChildren(QtGui.QToolBar) if bar.isVisible()]
+    if window.width() < SMALL_SCREEN or not bars:
+        return
+    top = min(bar.y() for bar in bars)
+    for bar in bars:
+        first_row = sorted((one for one in bars if one.y() == top), key=lambda one: one.x())
+        last = first_row[-1]
+        room = window.width() - last.x() - last.sizeHint().width()
+        lacks = bar.sizeHint().width() > bar.width() and bar not in first_row
+        if bar.objectName() in _titles and lacks and bar.sizeHint().width() <= room:
+            window.insertToolBar(last, bar)
+            window.insertToolBar(bar, last)
+            window.layout().activate()
 
 
 def at_start() -> None:

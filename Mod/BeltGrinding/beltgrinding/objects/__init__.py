@@ -27,6 +27,7 @@ DOCUMENT_FUNCTIONS = (
     "set_sections",
     "set_zones",
     "make_figures",
+    "make_figures_page",
     "write_report",
     "check_settings",
     "export_job",

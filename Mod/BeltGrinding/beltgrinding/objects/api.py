@@ -25,7 +25,7 @@ from .planning_runs import apply_plan, make_plan, write_plan
 from .preferences import apply_threads
 from .proxy import type_of
 from .robot_program import make_robot_program, write_robot_program
-from .reports import make_figures, write_report
+from .reports import make_figures, make_figures_page, write_report
 from .runs import check_settings, import_result, simulate, store_result
 from .set_up import (
     export_program,

@@ -6,10 +6,13 @@ job, not in it: a child that reads its parent would be a circle.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
+from pathlib import Path
 
 import FreeCAD
 
+from ..engine import InputError
 from .belt_machine import BeltMachine
 from .deviation import Deviation
 from .job_data import child
@@ -20,6 +23,11 @@ from .stock import Stock
 from .verdict import Verdict
 
 MARK = "Job"  # the sheet's property that links its job
+PAGE, TABLE, BLANK = (
+    "TechDraw::DrawPage",
+    "TechDraw::DrawViewSpreadsheet",
+    "A4_Portrait_blank.svg",
+)
 WIDTHS = {"A": 300, "B": 130, "C": 130}  # pixels
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
@@ -195,16 +203,59 @@ def make(job: DocumentObject) -> Sheet:
     return sheet
 
 
+def make_page(job: DocumentObject) -> DocumentObject:
+    """The job's drawing page with a table of its figures, which follows the sheet; made where it is missing. The sheet is
+    made, too. Raises InputError."""
+    sheet = make(job)
+    last = max(int(cell[1:]) for cell in _filled(sheet) if cell[0] in WIDTHS and cell[1:].isdigit())
+    found = next((obj for obj in sheet.InList if obj.TypeId == TABLE), None)
+    table = found or job.Document.addObject(TABLE, "FiguresTable")
+    table.Source, table.CellStart, table.CellEnd = sheet, "A1", f"C{last}"
+    page = next((obj for obj in table.InList if obj.TypeId == PAGE), None)
+    if page is None:
+        page = _page(job)
+        page.addView(table)
+        table.X, table.Y = (
+            0.5 * getattr(page.Template, side).Value for side in ("Width", "Height")
+        )
+    job.Document.recompute()
+    return page
+
+
+def _page(job: DocumentObject) -> DocumentObject:
+    """An empty drawing page for a job."""
+    folder = Path(FreeCAD.getResourceDir(), "Mod", "TechDraw", "Templates")
+    file = next(folder.rglob(BLANK), None)  # in a folder of its own from 1.1 on
+    if file is None:
+        raise InputError(
+            "objects.no_template",
+            "TechDraw's template {file} is not in {folder}: install FreeCAD's TechDraw",
+            file=BLANK,
+            folder=str(folder),
+        )
+    page = job.Document.addObject(PAGE, "FiguresPage")
+    page.Label = FreeCAD.Qt.translate("BeltGrinding", "Figures in a drawing")
+    template = job.Document.addObject("TechDraw::DrawSVGTemplate", "FiguresTemplate")
+    template.Template = str(file)
+    page.Template = template
+    return page
+
+
+def _filled(sheet: Sheet) -> list[str]:
+    """Names of the cells that hold something."""
+    return list(sheet.getUsedCells() if hasattr(sheet, "getUsedCells") else _used(sheet))
+
+
 def _clear(sheet: Sheet) -> None:
     """Takes out what ``make`` has put in."""
-    for cell in sheet.getUsedCells() if hasattr(sheet, "getUsedCells") else _used(sheet):
+    for cell in _filled(sheet):
         if cell[0] in WIDTHS and cell[1:].isdigit():
             sheet.clear(cell)
 
 
 def _used(sheet: Sheet) -> list[str]:
     """Names of the cells that hold something, of FreeCADs that do not tell."""
-    return [name for name in sheet.cells.Content] if hasattr(sheet, "cells") else []
+    return re.findall(r'<Cell address="([A-Z]+[0-9]+)"', sheet.cells.Content)
 
 
 def _fill(

@@ -16,6 +16,12 @@ from .simulation import simulated
 from .verdict import limits_changed, verdict_of
 
 
+def make_figures_page(job: DocumentObject) -> DocumentObject:
+    """Makes a TechDraw page with a table of the job's figures, which follows its spreadsheet; returns it. Raises InputError
+    without a result."""
+    return figures.make_page(job)
+
+
 def make_figures(job: DocumentObject) -> Sheet:
     """A spreadsheet of the job's figures, live; filled anew where there is one already."""
     return figures.make(job)

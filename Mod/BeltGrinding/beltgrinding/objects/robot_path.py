@@ -386,14 +386,20 @@ def load_program(
     set_by_name(obj, values)
 
 
+def as_run(obj: DocumentObject) -> dict[str, Array]:
+    """As ``arrays`` of the proxy of a RobotPath or RobotProgram, its overrides taken in."""
+    arrays = dict(obj.Proxy.arrays(obj))
+    count = len(arrays["frames"])
+    if "FeedOverride" in obj.PropertiesList and obj.FeedOverride.Value > 0:
+        arrays["feeds"] = np.full(count, obj.FeedOverride.Value)
+    if "ForceOverride" in obj.PropertiesList and obj.ForceOverride.Value > 0:
+        arrays["forces"] = np.full(count, obj.ForceOverride.getValueAs("N").Value)
+    return arrays
+
+
 def write(obj: DocumentObject, file: Path | str, **options: Any) -> Any:
     """Writes a RobotPath as a robot program; what ``write_program`` returns. Raises InputError."""
-    arrays = obj.Proxy.arrays(obj)
-    feeds, forces = arrays["feeds"], arrays["forces"]
-    if obj.FeedOverride.Value > 0:
-        feeds = np.full(len(feeds), obj.FeedOverride.Value)
-    if obj.ForceOverride.Value > 0:
-        forces = np.full(len(forces), obj.ForceOverride.getValueAs("N").Value)
+    arrays = as_run(obj)
     words = {"tool": "", "base": ""}
     if obj.Machine is not None and obj.Machine.Robot:
         words = words_of_cell(matrix(obj.Machine.BaseFromRobot), matrix(obj.Machine.FlangeFromTcp))
@@ -410,7 +416,7 @@ def write(obj: DocumentObject, file: Path | str, **options: Any) -> Any:
             **corner_of(float(zone)),
         )
         for frame, feed, force, fast, line, zone in zip(
-            arrays["frames"], feeds, forces, arrays["rapid"], arrays["lines"], arrays["zones"]
+            *(arrays[name] for name in ("frames", "feeds", "forces", "rapid", "lines", "zones"))
         )
     ]
     options.setdefault("tools", obj.ProgramTool.strip() or None)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import FreeCAD
 import FreeCADGui as Gui
 
@@ -260,6 +258,14 @@ MENU = (  # (title of a submenu, or "" for the menu itself, its commands), in th
                 report.make_figures,
                 no_result,
             ),
+            Command(
+                "FiguresPage",
+                "Figures in a drawing",
+                "Makes a drawing page with a table of the figures that follows the result",
+                "G, Shift+D",
+                report.make_figures_page,
+                no_result,
+            ),
         ),
     ),
     SEPARATOR,
@@ -305,54 +311,14 @@ MENU = (  # (title of a submenu, or "" for the menu itself, its commands), in th
         ),
     ),
     (
-        QT_TRANSLATE_NOOP("Workbench", "Examples"),
+        "",
         (
             Command(
-                "ExampleBlade",
-                "Example: compressor blade",
-                "Makes a document with a blade, its stock and its program",
-                "",
-                partial(files.open_example, "blade"),
-                always,
-            ),
-            Command(
-                "ExampleTap",
-                "Example: mixer tap",
-                "Makes a document with a tap that a robot holds against the belt",
-                "",
-                partial(files.open_example, "tap"),
-                always,
-            ),
-            Command(
-                "ExampleTapBelt",
-                "Example: tap spout on a free belt",
-                "Makes a document with a tap whose spout a free belt wraps round",
-                "",
-                partial(files.open_example, "tap_belt"),
-                always,
-            ),
-            Command(
-                "ExampleVane",
-                "Example: blade with fillet and edges",
-                "Makes a document with a blade that is ground on both sides",
-                "",
-                partial(files.open_example, "vane"),
-                always,
-            ),
-            Command(
-                "ExampleEdges",
-                "Example: edges of a compressor blade",
-                "Makes a document with a blade whose edges are ground round, measured before and after",
-                "",
-                partial(files.open_example, "edges"),
-                always,
-            ),
-            Command(
-                "ExampleKnife",
-                "Example: chef's knife",
-                "Makes a document with a knife, ground by a robot that speeds up and slows down",
-                "",
-                partial(files.open_example, "knife"),
+                "Examples",
+                "Examples...",
+                "Shows examples by topic: parts with stock, machine and program, to set up or to run",
+                "G, Shift+X",
+                files.show_examples,
                 always,
             ),
         ),

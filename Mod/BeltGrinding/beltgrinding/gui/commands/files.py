@@ -12,7 +12,7 @@ from ..common.compat import QtGui, translate
 from ..common.save_dialog import file_to_write
 from ..common.transaction import transaction
 from ..common.task_panel import show_panel
-from .base import active_job, expand
+from .base import PREFIX, active_job, expand
 
 
 def _jobs_filter() -> str:
@@ -73,6 +73,18 @@ def open_example(example: str) -> None:
     expand(api.open_example(folder, example))
     Gui.activeDocument().activeView().viewIsometric()
     Gui.SendMsgToActiveView("ViewFit")
+
+
+def run_example(example: str) -> None:
+    """Makes a document of an example and simulates it."""
+    open_example(example)
+    Gui.runCommand(f"{PREFIX}Simulate")
+
+
+def show_examples() -> None:
+    from ..docks.examples_dock import show
+
+    show(open_example, run_example)
 
 
 def calibrate() -> None:

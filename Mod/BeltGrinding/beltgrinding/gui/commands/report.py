@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 from ...objects import api
-from ...objects.kinds import Sheet
+from ...objects.kinds import DocumentObject, Sheet
 from ..common.compat import translate
 from ..common.save_dialog import file_to_write
 from ..common.task_panel import show_panel
@@ -45,6 +45,16 @@ def make_figures() -> None:
     job = active_job()
     title = translate("BeltGrinding", "Figures")
     make(job.Document, title, lambda: api.make_figures(job), _show_sheet, panel=False)
+
+
+def make_figures_page() -> None:
+    job = active_job()
+    title = translate("BeltGrinding", "Figures in a drawing")
+    make(job.Document, title, lambda: api.make_figures_page(job), _show_page, panel=False)
+
+
+def _show_page(page: DocumentObject) -> None:
+    page.ViewObject.doubleClicked()
 
 
 def _show_sheet(sheet: Sheet) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from .keyboard import space_presses
 from .kinds import Widget
 
 PROPERTY = "beltGrindingPage"  # of a panel's form, or a dock
@@ -14,15 +15,11 @@ PAGES = {  # name of a command, whose icon a panel bears: page of docs/
     "CheckSettings": "convergence.md",
     "Contact": "contact.md",
     "Deviation": "workbench-results.md",
-    "ExampleBlade": "examples.md",
-    "ExampleEdges": "examples.md",
-    "ExampleKnife": "examples.md",
-    "ExampleTap": "examples.md",
-    "ExampleTapBelt": "examples.md",
-    "ExampleVane": "examples.md",
+    "Examples": "examples.md",
     "ExportJob": "workbench-export.md",
     "ExportProgram": "workbench-programs.md",
     "Figures": "workbench-export.md",
+    "FiguresPage": "workbench-export.md",
     "FollowPath": "workbench-programs.md",
     "GrindFaces": "planning.md",
     "GroundMesh": "ground-mesh.md",
@@ -51,7 +48,8 @@ PAGES = {  # name of a command, whose icon a panel bears: page of docs/
 
 
 def helped(widget: Widget, icon_name: str) -> None:
-    """Gives a panel's form, or a dock, its page."""
+    """Gives a panel's form, or a dock, its page; Space presses its buttons."""
+    space_presses(widget)
     widget.setProperty(PROPERTY, PAGES[icon_name.partition("_")[2]])
 
 

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Callable
+from functools import cache
 from typing import Any
 
-import FreeCAD
 import FreeCADGui as Gui
 
 from ...base.resources import resources
 from .compat import QtCore, QtGui
-from .kinds import Icon
+from .kinds import Icon, Painter
 from .theme import theme
 
 SIZE = 64  # pixels of an icon that is put together
 PALE = 0.4  # opacity of the icon of what is left out
 CROSSED, STROKE = "#d03030", 6  # the line through it, its pixels
 BADGE = 0.62  # of its side: the mark in its corner
-_marked = {}  # name -> file
 
 
 def icon(name: str) -> str:
@@ -30,43 +29,42 @@ def qicon(name: str) -> Icon:
     return Gui.getIcon(icon(name))
 
 
-def stale_icon(name: str) -> str:
-    """Path of the icon ``name`` with the mark of what is out of date in its corner."""
-    if name not in _marked:
-        picture = QtGui.QPixmap(SIZE, SIZE)
-        picture.fill(QtCore.Qt.transparent)
-        painter = QtGui.QPainter(picture)
+@cache
+def stale_icon(name: str) -> Icon:
+    """QIcon of ``name`` with the mark of what is out of date in its corner."""
+    badge = round(BADGE * SIZE)
+    mark = qicon("BeltGrinding_OutOfDate").pixmap(badge, badge)
+
+    def draw(painter: Painter) -> None:
         painter.drawPixmap(0, 0, qicon(name).pixmap(SIZE, SIZE))
-        badge = round(BADGE * SIZE)
-        mark = qicon("BeltGrinding_OutOfDate").pixmap(badge, badge)
         painter.drawPixmap(SIZE - badge, SIZE - badge, mark)
-        painter.end()
-        path = Path(FreeCAD.getTempPath()) / f"{name}_OutOfDate.png"
-        if not picture.save(str(path)):
-            return icon("BeltGrinding_OutOfDate")
-        _marked[name] = str(path)
-    return _marked[name]
+
+    return _drawn(draw)
 
 
-def pale_icon(name: str) -> str:
-    """Path of the icon ``name`` as that of what is left out: pale and crossed out."""
-    key = f"{name}_LeftOut"
-    if key not in _marked:
-        picture = QtGui.QPixmap(SIZE, SIZE)
-        picture.fill(QtCore.Qt.transparent)
-        painter = QtGui.QPainter(picture)
-        painter.setRenderHint(QtGui.QPainter.Antialiasing)
+@cache
+def pale_icon(name: str) -> Icon:
+    """QIcon of ``name`` as that of what is left out: pale and crossed out."""
+
+    def draw(painter: Painter) -> None:
         painter.setOpacity(PALE)
         painter.drawPixmap(0, 0, qicon(name).pixmap(SIZE, SIZE))
         painter.setOpacity(1.0)
         painter.setPen(QtGui.QPen(QtGui.QColor(CROSSED), STROKE))
         painter.drawLine(STROKE, SIZE - STROKE, SIZE - STROKE, STROKE)
-        painter.end()
-        path = Path(FreeCAD.getTempPath()) / f"{key}.png"
-        if not picture.save(str(path)):
-            return icon(name)
-        _marked[key] = str(path)
-    return _marked[key]
+
+    return _drawn(draw)
+
+
+def _drawn(draw: Callable[[Painter], None]) -> Icon:
+    """QIcon of what ``draw`` paints. It stays in memory: a file would have an owner, and stay behind."""
+    picture = QtGui.QPixmap(SIZE, SIZE)
+    picture.fill(QtCore.Qt.transparent)
+    painter = QtGui.QPainter(picture)
+    painter.setRenderHint(QtGui.QPainter.Antialiasing)
+    draw(painter)
+    painter.end()
+    return QtGui.QIcon(picture)
 
 
 MEDIA: dict[str, Any] = {  # polygons in a square of 16, drawn in the colour of the window's text
@@ -81,14 +79,12 @@ MEDIA: dict[str, Any] = {  # polygons in a square of 16, drawn in the colour of 
 
 def media_icon(name: str) -> Icon:
     """QIcon of a button of the playback: Qt's own are dark in every theme."""
-    picture = QtGui.QPixmap(SIZE, SIZE)
-    picture.fill(QtCore.Qt.transparent)
-    painter = QtGui.QPainter(picture)
-    painter.setRenderHint(QtGui.QPainter.Antialiasing)
-    painter.setPen(QtCore.Qt.NoPen)
-    painter.setBrush(QtGui.QColor(theme().text))
-    for corners in MEDIA[name]:
-        points = [QtCore.QPointF(x * SIZE / 16, y * SIZE / 16) for x, y in corners]
-        painter.drawPolygon(QtGui.QPolygonF(points))
-    painter.end()
-    return QtGui.QIcon(picture)
+
+    def draw(painter: Painter) -> None:
+        painter.setPen(QtCore.Qt.NoPen)
+        painter.setBrush(QtGui.QColor(theme().text))
+        for corners in MEDIA[name]:
+            points = [QtCore.QPointF(x * SIZE / 16, y * SIZE / 16) for x, y in corners]
+            painter.drawPolygon(QtGui.QPolygonF(points))
+
+    return _drawn(draw)

@@ -9,6 +9,7 @@ import FreeCADGui as Gui
 
 from ...objects.kinds import Document, DocumentObject
 from .compat import QtCore
+from .keyboard import take_keyboard
 
 
 class _Watch:
@@ -45,4 +46,5 @@ class _Watch:
 def show_panel(panel: Any, obj: DocumentObject) -> None:
     """Shows a panel of an object until one closes it, or the object goes."""
     Gui.Control.showDialog(panel)
+    take_keyboard(panel.form)
     _Watch(panel, obj)

@@ -76,7 +76,7 @@ class Playback(QtGui.QDockWidget):
             self.setWidget(self._offer(simulation))
             return
         try:
-            self.scene = Scene(job, simulation, found[0])
+            self.scene = Scene(job, simulation, *found)
         except InputError as error:
             self.setWidget(self._offer(simulation))
             self.state.setText(error_text(error))

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...base.kinds import known
 from ...engine import InputError
-from ...objects import api, ground_by, raster_path, verdict as objects
+from ...objects import api, ground_by, raster_path, robot_path, verdict as objects
 from ...objects.belt_machine import half_size
 from ...objects.job_data import face_name
 from ...objects.kinds import DocumentObject, Field
@@ -300,7 +300,7 @@ class VerdictDock(ObjectDock):
             self.poses.hide()
             return
         self.wheel = CellView(self.shown().Document, path.Machine)
-        self.wheel.set_path(path.Proxy.arrays(path)["frames"])
+        self.wheel.set_path(path.Proxy.arrays(path)["frames"], robot_path.as_run(path))
         self.wheel.set_pose(pose)
 
     def open_program(self, row: int) -> None:

@@ -78,32 +78,34 @@ class BeltMachinePanel(Panel):
         wheel.add("WheelDensity", text, unit="kg/m³")
         trained = translate("BeltGrinding", "Surrogate")
         wheel.add("SurrogateFile", trained, f"{trained} (*.npz)")
-        belt = Form(obj, translate("BeltGrinding", "Belt and control"))
+        belt = Form(obj, translate("BeltGrinding", "Belt"))
         belt.add("BeltSpeed", translate("BeltGrinding", "Belt speed"))
         belt.add("Belt", translate("BeltGrinding", "Belt"), _belts(obj.Document))
         belt.add("BeltWear", translate("BeltGrinding", "Cutting ability (fresh: 1)"))
-        control = {
+        control = Form(obj, translate("BeltGrinding", "Control"))
+        controls = {
             "force": translate("BeltGrinding", "Force"),
             "position": translate("BeltGrinding", "Position"),
         }
-        belt.add("Control", translate("BeltGrinding", "Control"), control)
-        belt.add("Force", translate("BeltGrinding", "Force"))
-        belt.add("ForceTravel", translate("BeltGrinding", "Travel of the force control"))
+        control.add("Control", translate("BeltGrinding", "Control"), controls)
+        control.add("Force", translate("BeltGrinding", "Force"))
+        control.add("ForceTravel", translate("BeltGrinding", "Travel of the force control"))
         dynamics = {
             "ideal": translate("BeltGrinding", "At every moment"),
             "lag": translate("BeltGrinding", "With a lag"),
             "actuator": translate("BeltGrinding", "Mass and damping"),
         }
-        belt.add("ForceModel", translate("BeltGrinding", "Force is met"), dynamics)
-        belt.add("ForceLag", translate("BeltGrinding", "Regulator's lag"), unit="s")
-        belt.add("MovingMass", translate("BeltGrinding", "Moving mass"), unit="kg")
-        belt.add("Damping", translate("BeltGrinding", "Damping"), unit="N s/mm")
-        belt.add("SpeedLimit", translate("BeltGrinding", "Speed limit (0: none)"))
+        control.add("ForceModel", translate("BeltGrinding", "Force is met"), dynamics)
+        control.add("ForceLag", translate("BeltGrinding", "Regulator's lag"), unit="s")
+        control.add("MovingMass", translate("BeltGrinding", "Moving mass"), unit="kg")
+        control.add("Damping", translate("BeltGrinding", "Damping"), unit="N s/mm")
+        control.add("SpeedLimit", translate("BeltGrinding", "Speed limit (0: none)"))
         text = translate("BeltGrinding", "Overshoot told from")
-        belt.add("OvershootLimit", text)
-        belt.add("BounceTime", translate("BeltGrinding", "Bounces told within"), unit="s")
+        control.add("OvershootLimit", text)
+        control.add("BounceTime", translate("BeltGrinding", "Bounces told within"), unit="s")
         text = translate("BeltGrinding", "Robot's stiffness (0: rigid)")
-        belt.add("RobotStiffness", text, unit="N/mm")
+        control.add("RobotStiffness", text, unit="N/mm")
+        device = Form(obj, translate("BeltGrinding", "Force in programs"))
         devices = {
             "none": translate("BeltGrinding", "Not at all"),
             "analog": translate("BeltGrinding", "Analog output"),
@@ -111,41 +113,49 @@ class BeltMachinePanel(Panel):
             "call": translate("BeltGrinding", "Subprogram"),
             "template": translate("BeltGrinding", "Statement of your own"),
         }
-        belt.add("ForceDevice", translate("BeltGrinding", "Programs set it by"), devices)
-        belt.add("DeviceName", translate("BeltGrinding", "Name"))
-        belt.add("DeviceOutput", translate("BeltGrinding", "Output number"))
-        belt.add("DeviceTemplate", translate("BeltGrinding", "Statement"))
-        belt.add("DeviceScale", translate("BeltGrinding", "Value per newton"), SIGNED, "1/N")
-        belt.add("DeviceOffset", translate("BeltGrinding", "Value at 0 N"), SIGNED)
-        belt.add("DeviceLeast", translate("BeltGrinding", "Least force"))
-        belt.add("DeviceGreatest", translate("BeltGrinding", "Greatest force (0: any)"))
-        belt.add("DeviceRamp", translate("BeltGrinding", "Ramp (0: at once)"), unit="N/s")
-        belt.add("DeviceDeadTime", translate("BeltGrinding", "Dead time"), unit="s")
-        belt.add("DeviceResolution", translate("BeltGrinding", "Steps of the force (0: any)"))
-        self.belt, self.wheel = belt, wheel
-        self.body.addWidget(kind)
-        forms = (kind, wheel, self.fork, self.run, self.platen, self.frame, belt)
+        device.add("ForceDevice", translate("BeltGrinding", "Programs set it by"), devices)
+        device.add("DeviceName", translate("BeltGrinding", "Name"))
+        device.add("DeviceOutput", translate("BeltGrinding", "Output number"))
+        device.add("DeviceTemplate", translate("BeltGrinding", "Statement"))
+        device.add("DeviceScale", translate("BeltGrinding", "Value per newton"), SIGNED, "1/N")
+        device.add("DeviceOffset", translate("BeltGrinding", "Value at 0 N"), SIGNED)
+        device.add("DeviceLeast", translate("BeltGrinding", "Least force"))
+        device.add("DeviceGreatest", translate("BeltGrinding", "Greatest force (0: any)"))
+        device.add("DeviceRamp", translate("BeltGrinding", "Ramp (0: at once)"), unit="N/s")
+        device.add("DeviceDeadTime", translate("BeltGrinding", "Dead time"), unit="s")
+        device.add("DeviceResolution", translate("BeltGrinding", "Steps of the force (0: any)"))
+        self.control, self.device, self.wheel = control, device, wheel
+        forms = (kind, wheel, self.fork, self.run, self.platen, self.frame, belt, control, device)
         self.presets = PresetForm(obj, forms, self.hardness)
-        self.body.addWidget(self.presets)
+        self.add_fold("foldKind", "BeltMachine", kind)
+        self.add_fold("foldPresets", "ApplyTemplate", self.presets)
+        self.of_wheel = self.add_fold("foldWheel", "Wheel", wheel)
+        self.of_fork = self.add_fold("foldFork", "Cell", self.fork, True)
+        self.of_run = self.add_fold("foldRun", "Belt", self.run)
+        self.of_platen = self.add_fold("foldPlaten", "Contact", self.platen)
+        self.of_frame = self.add_fold("foldFrame", "Cell", self.frame, True)
+        self.add_fold("foldBelt", "Belt", belt)
+        self.add_fold("foldControl", "Force", control)
+        text = device.rows["ForceDevice"][1].currentText
+        none = obj.ForceDevice == "none"
+        self.of_device = self.add_fold("foldDevice", "ExportProgram", device, none, text)
         for form in forms:
             form.changed = self.arrange
-            if form is not kind:
-                self.body.addWidget(form)
         self.finish()
         self.arrange()
 
     def arrange(self) -> None:
         """Shows the fields that the kind, the elasticity and the control use."""
         of_wheel = self.obj.Kind in machines.WHEELS
-        self.wheel.setVisible(of_wheel)
-        self.run.setVisible(not of_wheel)
-        self.frame.setVisible(not of_wheel)
+        self.of_wheel.setVisible(of_wheel)
+        self.of_run.setVisible(not of_wheel)
+        self.of_frame.setVisible(not of_wheel)
         arms = {"FrameSpread", "FrameArmThickness"} if self.obj.FrameLength.Value > 0.0 else set()
         if arms and self.obj.FrameArmThickness.Value > 0.0:
             arms |= {"FrameArmSides"}
         self.frame.show_rows({"FrameLength"} | arms)
-        self.fork.setVisible(self.obj.Kind == machines.SMALL_WHEEL)
-        self.platen.setVisible(self.obj.Kind == machines.PLATEN)
+        self.of_fork.setVisible(self.obj.Kind == machines.SMALL_WHEEL)
+        self.of_platen.setVisible(self.obj.Kind == machines.PLATEN)
         self.presets.show_kind(self.obj.Kind)
         if not self.layers.same(layers_of(self.obj)):
             self.layers.show_layers(layers_of(self.obj))
@@ -157,9 +167,7 @@ class BeltMachinePanel(Panel):
             "actuator": moving | {"MovingMass", "Damping", "SpeedLimit"},
         }
         force = {
-            "force": {"Force", "ForceTravel", "ForceModel", "ForceDevice"}
-            | dynamics[self.obj.ForceModel]
-            | self._device(),
+            "force": {"Force", "ForceTravel", "ForceModel"} | dynamics[self.obj.ForceModel],
             "position": {"RobotStiffness"},
         }[self.obj.Control]
         rubber = {"YoungsModulus", "ShoreA", "PoissonsRatio"}
@@ -179,7 +187,10 @@ class BeltMachinePanel(Panel):
             shape |= {"DynamicModulusFactor"}
             shape |= {"WheelDensity"} if self.obj.Control == "position" else set()
         self.wheel.show_rows(shape | used[self.obj.Compliance])
-        self.belt.show_rows({"BeltSpeed", "Belt", "BeltWear", "Control"} | force)
+        self.control.show_rows({"Control"} | force)
+        by_force = self.obj.Control == "force"
+        self.device.show_rows({"ForceDevice"} | self._device() if by_force else ())
+        self.of_device.setVisible(by_force)
         self.hardness.follow()
         self.tell("")
 

@@ -28,6 +28,7 @@ class BeltPanel(Panel):
         self.left.setObjectName("remainingCut")
         self.left.setWordWrap(True)
         self.body.addWidget(self.left)
+        self.buttons = []
         for name, text, action in (
             ("countRun", translate("BeltGrinding", "Count the simulated grind"), self.count),
             ("newBelt", translate("BeltGrinding", "New belt"), self.renew),
@@ -36,6 +37,7 @@ class BeltPanel(Panel):
             button.setObjectName(name)
             button.clicked.connect(action)
             self.body.addWidget(button)
+            self.buttons.append(button)
         self.finish()
         self.fill()
 
@@ -49,6 +51,9 @@ class BeltPanel(Panel):
         self.fields.add("RemovedVolume", translate("BeltGrinding", "Removed"), unit="mm³")
         self.fields.add("Loading", translate("BeltGrinding", "Loading (0 to 1)"))
         self.place.addWidget(self.fields)
+        order = [*(widget for _, widget in self.fields.rows.values()), *self.buttons]
+        for one, following in zip(order, order[1:]):
+            QtGui.QWidget.setTabOrder(one, following)
         text = translate("BeltGrinding", "Remaining cut: {:.1f} % of a fresh belt's")
         self.left.setText(text.format(self.obj.RemainingCut))
 

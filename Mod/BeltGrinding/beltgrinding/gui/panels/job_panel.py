@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import FreeCADGui as Gui
@@ -65,9 +65,8 @@ class JobPanel(Panel):
     def __init__(self, obj: DocumentObject) -> None:
         super().__init__(obj, translate("BeltGrinding", "Belt-grinding job"), "BeltGrinding_Job")
         self.first: dict[str, Any] | None = getattr(obj.Proxy, "proposed", None)  # of a new job
-        self.body.addWidget(self._faces())
-        self.folds = [*self._whole()]
-        for fold in self.folds:
+        self.add_fold("foldFaces", "GrindFaces", self._faces())
+        for fold in self._whole():
             self.body.addWidget(fold)
         sampling = Form(obj, translate("BeltGrinding", "Sampling and tolerance"))
         sampling.add("Spacing", translate("BeltGrinding", "Sample spacing"))
@@ -79,7 +78,7 @@ class JobPanel(Panel):
         sampling.add("ToleranceUpper", translate("BeltGrinding", "Upper limit"))
         sampling.add("ColourLimit", translate("BeltGrinding", "Colours end at"))
         sampling.add("FlipNormals", translate("BeltGrinding", "Flip loose normals"))
-        self._fold("foldSampling", sampling, self._sampling_text, folded=False)
+        self.add_fold("foldSampling", "Zones", sampling, False, self._sampling_text)
         self.timing = Form(obj, translate("BeltGrinding", "Robot's speed"))
         timings = {
             "constant_feed": translate("BeltGrinding", "Constant feed"),
@@ -96,14 +95,14 @@ class JobPanel(Panel):
         self.law = LawForms(obj)
         title = translate("BeltGrinding", "Removal and belt wear")
         new = self.first is not None
-        self._fold("foldLaw", self.law, self._law_text, title, new)
+        self.add_fold("foldLaw", "Calibrate", self.law, new, self._law_text, title)
         self.heat = HeatForm(obj)
-        self._fold("foldHeat", self.heat, self.heat.summary, folded=True)
+        self.add_fold("foldHeat", "Heat", self.heat, True, self.heat.summary)
         # Not self.finish, which a panel ends with.
         self.texture = FinishForm(obj)
-        self._fold("foldFinish", self.texture, self.texture.summary, folded=True)
+        self.add_fold("foldFinish", "Finish", self.texture, True, self.texture.summary)
         text = self.timing.rows["Timing"][1].currentText
-        self._fold("foldTiming", self.timing, text, folded=new)
+        self.add_fold("foldTiming", "Speed", self.timing, new, text)
         self.sampling = sampling
         sampling.changed = self.estimate
         self.timing.changed = self.arrange_timing
@@ -120,22 +119,6 @@ class JobPanel(Panel):
                 form.changed = self.estimate
         self.law.changed = self.estimate
         self.estimate()
-
-    def _fold(
-        self,
-        name: str,
-        content: Widget,
-        summary: Callable[[], str],
-        title: str = "",
-        folded: bool = False,
-    ) -> None:
-        """Adds a part of the panel that folds."""
-        if isinstance(content, QtGui.QGroupBox):
-            title = title or content.title()
-            content.setTitle("")
-        fold = Fold(name, title, content, summary, folded)
-        self.body.addWidget(fold)
-        self.folds.append(fold)
 
     def _sampling_text(self) -> str:
         lower, upper = (
@@ -165,6 +148,7 @@ class JobPanel(Panel):
                 form,
                 lambda: stock.Allowance.UserString,
                 not new,
+                "Stock",
             )
         machine, self.machine = job_data.child(self.obj, BeltMachine), None
         if machine is not None:
@@ -175,12 +159,13 @@ class JobPanel(Panel):
                 self.machine,
                 self.machine.summary,
                 not new,
+                "BeltMachine",
             )
         programs = job_data.children(self.obj, RobotPath)
         if len(programs) > 1 or not all(path.Active for path in programs):
             box = ActivePrograms(programs)
             title = translate("BeltGrinding", "Programs of a run")
-            yield Fold("foldPrograms", title, box, box.summary)
+            yield Fold("foldPrograms", title, box, box.summary, False, "ImportProgram")
         self.passes = self.plan_then = None
         paths = [path for path in job_data.children(self.obj, RasterPath) if proposed(path)]
         if paths and new:
@@ -206,7 +191,8 @@ class JobPanel(Panel):
                 self.passes.toggled.connect(self.plan_then.setEnabled)
                 layout.addWidget(self.plan_then)
             title = translate("BeltGrinding", "Passes")
-            yield Fold("foldPasses", title, box, lambda: paths[0].Feed.UserString)
+            text = lambda: paths[0].Feed.UserString
+            yield Fold("foldPasses", title, box, text, False, "RasterPath")
 
     def arrange_timing(self) -> None:
         """Shows the accelerations only where they matter."""

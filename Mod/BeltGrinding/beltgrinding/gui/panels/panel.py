@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 
 import FreeCAD
 import FreeCADGui as Gui
@@ -14,11 +15,11 @@ from ..common import field_links
 from ..common.compat import QtGui, buttons, translate
 from ..common.help_pages import helped
 from ..common.icons import qicon
-from ..common.kinds import Buttons
+from ..common.kinds import Buttons, Widget
 from ..common.messages import error_text
 from ..common.theme import warning_style
 from ..common.transaction import abort, commit
-from ..widgets.fold import slim
+from ..widgets.fold import Fold, slim
 from ..widgets.form import Form
 
 LONG = re.compile(r"\S{20,}")  # names and paths that may be wider than the dock
@@ -52,6 +53,23 @@ class Panel:
         self.note.hide()
         self.ended = False
         self.form.destroyed.connect(lambda *_: self._gone())
+
+    def add_fold(
+        self,
+        name: str,
+        icon_name: str,
+        content: Widget,
+        folded: bool = False,
+        summary: Callable[[], str] = lambda: "",
+        title: str = "",
+    ) -> Fold:
+        """Adds a box that folds; its title is that of its content, unless one is given."""
+        if isinstance(content, QtGui.QGroupBox):
+            title = title or content.title()
+            content.setTitle("")
+        fold = Fold(name, title, content, summary, folded, icon_name)
+        self.body.addWidget(fold)
+        return fold
 
     def finish(self) -> None:
         """Puts the line for messages above the fields, under the buttons; call it last in __init__."""

@@ -6,6 +6,7 @@ moves, a transform before all that is drawn in the view carries the part through
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
@@ -14,11 +15,12 @@ import numpy as np
 from pivy import coin
 
 from ...base.frames import work_from_frames
+from ...base.kinds import known
 from ...geometry.body_names import WHEEL
 from ...objects import belt_machine, bodies
 from ...objects.kinds import Document, DocumentObject
 from ..common.kinds import Array, Node, Surface, View3D
-from . import belt_shapes
+from . import belt_shapes, loads
 from .part_context import mesh_of_part
 from .robot_view import RobotView
 from .shapes3d import (
@@ -49,6 +51,17 @@ CELL: dict[str, Any] = {
 }
 
 
+SHOWN = "Loads"  # property of a machine's view: whether arrows show what acts at the contact
+_open: weakref.WeakSet[CellView] = weakref.WeakSet()
+
+
+def redraw_loads(machine: DocumentObject) -> None:
+    """Draws the loads of a machine anew wherever its cell is shown: its view's property, or a unit, is another."""
+    for cell in _open:
+        if cell.machine == machine and cell.scenes:
+            cell.draw_loads()
+
+
 class CellView:
     """Draws the cell of ``machine`` (None: only the tool frame) at the poses of a path."""
 
@@ -57,6 +70,9 @@ class CellView:
         self.poses = np.zeros((0, 4, 4))
         self.pose, self.moving = 0, False
         self.frame: Array | None = None  # between two poses
+        self.motions: Mapping[str, Array] | None = None  # feeds, forces, rapid of the poses
+        self.load: loads.Load | None = None  # at ``frame``
+        self.loads = coin.SoGroup()
         self.carrier = coin.SoMatrixTransform()
         self.places = {name: coin.SoMatrixTransform() for name in ("contact", "tool", STANDING)}
         self.things = {name: coin.SoGroup() for name in (*self.places, "part")}
@@ -70,6 +86,7 @@ class CellView:
         self.belt: dict[str, Any] | None = None  # of a machine without a wheel, as a job has it
         self.part: Surface | None = None
         self.pressed = False  # the belt is drawn as the part presses it
+        self.root.addChild(separator(self.places["contact"], self.loads))
         self.robot = RobotView()
         self.root.addChild(self.robot.root)
         self.scenes = [
@@ -79,6 +96,7 @@ class CellView:
         for scene in self.scenes:
             scene.insertChild(self.carrier, 0)
             scene.addChild(self.root)
+        _open.add(self)
         self.rebuild()
 
     def close(self) -> None:
@@ -88,18 +106,19 @@ class CellView:
                     scene.removeChild(node)
         self.scenes = []
 
-    def set_path(self, poses: Array) -> None:
-        """base_from_tcp (n, 4, 4) in mm of the path that is walked."""
+    def set_path(self, poses: Array, motions: Mapping[str, Array] | None = None) -> None:
+        """base_from_tcp (n, 4, 4) in mm of the path that is walked. ``motions``: as ``loads.at_pose`` takes them."""
         self.poses, self.pose, self.frame = np.asarray(poses, dtype=float), 0, None
+        self.motions = motions
         self.update()
 
     def set_pose(self, index: int) -> None:
         self.pose, self.frame = index, None
         self.update()
 
-    def set_frame(self, base_from_tcp: Array) -> None:
-        """Shows the tool at a frame (4, 4) in mm that need not be a pose's."""
-        self.frame = base_from_tcp
+    def set_frame(self, base_from_tcp: Array, load: loads.Load | None = None) -> None:
+        """Shows the tool at a frame (4, 4) in mm that need not be a pose's, and the load there, where it is known."""
+        self.frame, self.load = base_from_tcp, load
         self.update()
 
     def set_moving(self, moving: bool) -> None:
@@ -198,6 +217,30 @@ class CellView:
         set_matrix(self.carrier, self.carried(frames))
         self._press(frames["contact"])
         self.robot.place(frames["base"], self.base_from_tcp(), self.pose)
+        self.draw_loads()
+
+    def draw_loads(self) -> None:
+        """Draws what acts at the contact, unless the machine's view says no."""
+        self.loads.removeAllChildren()
+        machine = self.machine
+        if machine is None or not getattr(machine.ViewObject, SHOWN, False) or not len(self.poses):
+            return
+        load = self._load()
+        if load is not None:
+            frame = self.frames()["contact"]
+            self.loads.addChild(loads.arrows(machine, load, frame, self.moving))
+
+    def _load(self) -> loads.Load | None:
+        """What acts at the frame, or at the pose; None where that is not known."""
+        if self.frame is not None:
+            return self.load
+        if self.motions is None:
+            return None
+        to = min(self.pose + 1, len(self.poses) - 1)
+        if to < 1:
+            return None
+        ends = work_from_frames(self.poses[to - 1 : to + 1], **self.cell())["contact"][:, :3, 3]
+        return loads.of_motion(self.motions, known(self.machine), to, ends[1] - ends[0])
 
     def carried(self, frames: Mapping[str, Array]) -> Array:
         """How the part has moved in the cell since the first pose; it lies as drawn there."""

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pivy import coin
 
+from ...base.frames import work_from_frames
 from ...engine import InputError
 from ...job.tolerances import colour_scale
 from ...objects import ground_by, job_data, job_inputs, preferences
@@ -19,8 +21,8 @@ from ...objects.plan import Plan
 from ...objects.shown import bands_of
 from ..common.compat import translate
 from ..common.editing import edit
-from ..common.kinds import Node
-from . import legend
+from ..common.kinds import Array, Node
+from . import legend, loads
 from .cell_view import CellView
 from .field_view import DEVIATION, FieldView
 from .part_context import points_of_part, rest_of_part
@@ -35,9 +37,13 @@ class Scene:
     """What is drawn: the field at a moment, the wheel on it, the rest of the part."""
 
     def __init__(
-        self, job: DocumentObject, simulation: DocumentObject, recording: core.Recording
+        self,
+        job: DocumentObject,
+        simulation: DocumentObject,
+        recording: core.Recording,
+        steps: Mapping[str, Array],
     ) -> None:
-        self.recording, self.simulation = recording, simulation
+        self.recording, self.simulation, self.steps = recording, simulation, steps
         programs = ground_by.of_result(job, simulation.Programs)
         self.paths = job_inputs.tool_paths(job, programs)
         self.labels = [program.Label for program in programs]
@@ -93,7 +99,13 @@ class Scene:
         k = min(int(np.searchsorted(self.ends, self.time)), len(self.paths) - 1)
         begin = self.ends[k - 1] if k else 0.0
         base_from_tcp, pose = self.paths[k].frame_at(self.time - begin)
-        self.cell.set_frame(base_from_tcp)
+        # Within the program's time: beyond its ends it stands still.
+        middle = min(max(self.time, begin + loads.MOMENT), self.ends[k] - loads.MOMENT) - begin
+        around = [
+            self.paths[k].frame_at(middle + side)[0] for side in (-loads.MOMENT, loads.MOMENT)
+        ]
+        ends = work_from_frames(np.array(around), **self.cell.cell())["contact"][:, :3, 3]
+        self.cell.set_frame(base_from_tcp, loads.at_moment(self.steps, self.time, *ends))
         self.place = (self.labels[k], pose, int(self.lines[k][pose]))
 
     def _scale(self, job: DocumentObject) -> tuple[Any, ...]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import FreeCAD
-import FreeCADGui as Gui
 import numpy as np
 from pivy import coin
 
@@ -17,10 +16,10 @@ from ...objects.kinds import DocumentObject, ViewObject
 from ...objects.robot_path import load_program
 from ..common.chosen import activate, jobs_of
 from ..common.compat import translate
-from ..common.icons import icon, pale_icon, qicon
-from ..common.kinds import Menu
+from ..common.icons import pale_icon, qicon
+from ..common.kinds import Icon, Menu
 from ..common.redraw import Once
-from ..scene import left_out, path_arrows, stock_shell
+from ..scene import cell_view, left_out, path_arrows, stock_shell
 from ..scene.legend import Legend
 from ..scene.part_context import design_key, points_of_part
 from .coloured_mesh_view import frame_selected, name_of
@@ -151,6 +150,17 @@ class BeltMachineView(Undrawn):
     ICON = "BeltGrinding_BeltMachine"
     COMMANDS = ("BeltGrinding_Cell", "BeltGrinding_Belt", "BeltGrinding_Contact")
 
+    def attach(self, view: ViewObject) -> None:
+        if cell_view.SHOWN not in view.PropertiesList:
+            text = "show force, feed and the belt's travel as arrows where the cell is drawn"
+            view.addProperty("App::PropertyBool", cell_view.SHOWN, "Belt grinding", text)
+            setattr(view, cell_view.SHOWN, True)
+        super().attach(view)
+
+    def draw(self) -> None:
+        super().draw()
+        cell_view.redraw_loads(self.view.Object)
+
     def panel(self, obj: DocumentObject) -> Any:
         from ..panels.belt_machine_panel import BeltMachinePanel
 
@@ -248,10 +258,10 @@ class RobotPathView(View):
         if obj.Active:
             picture, text = pale_icon(self.ICON), translate("BeltGrinding", "Leave out of runs")
         else:
-            picture, text = icon(self.ICON), translate("BeltGrinding", "Take into runs")
-        menu.addAction(Gui.getIcon(picture), text, lambda: set_active(obj, not obj.Active))
+            picture, text = qicon(self.ICON), translate("BeltGrinding", "Take into runs")
+        menu.addAction(picture, text, lambda: set_active(obj, not obj.Active))
 
-    def getIcon(self) -> str:
+    def getIcon(self) -> str | Icon:
         view = getattr(self, "view", None)
         left_out = view is not None and not getattr(view.Object, "Active", True)
         return pale_icon(self.ICON) if left_out else super().getIcon()

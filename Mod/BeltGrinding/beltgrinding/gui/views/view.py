@@ -12,8 +12,9 @@ from ...objects.proxy import Stateless
 from ..common import command_registry
 from ..common.compat import translate
 from ..common.icons import icon, qicon, stale_icon
-from ..common.kinds import Menu
+from ..common.kinds import Icon, Menu
 from ..common.redraw import Once, drawing
+from ..common.keyboard import take_keyboard
 from ..common.editing import edit
 
 if TYPE_CHECKING:
@@ -84,7 +85,7 @@ class View(Stateless):
         self.covered = covered
         drawing.now(self.view.Object.Document)
 
-    def getIcon(self) -> str:
+    def getIcon(self) -> str | Icon:
         """The object's; a marked one where its result is out of date."""
         view = getattr(self, "view", None)
         stale = view is not None and getattr(view.Object, "OutOfDate", False)
@@ -115,7 +116,9 @@ class View(Stateless):
     def setEdit(self, view: ViewObject, mode: int = 0) -> bool | None:
         if mode != 0:
             return None
-        Gui.Control.showDialog(self.panel(view.Object))
+        panel = self.panel(view.Object)
+        Gui.Control.showDialog(panel)
+        take_keyboard(panel.form)
         return True
 
     def unsetEdit(self, view: ViewObject, mode: int = 0) -> bool | None:

@@ -101,6 +101,11 @@ def _no_number(text: str) -> str:
 SIGNED = "signed"
 
 
+FILE_WIDTH = (
+    170  # pixels: beside most labels it goes on a line of its own, where a name can be read
+)
+
+
 class Form(QtGui.QGroupBox):
     """Rows of fields; every change goes to the property at once."""
 
@@ -350,6 +355,7 @@ class Form(QtGui.QGroupBox):
         widget = Gui.UiLoader().createWidget("Gui::FileChooser")
         widget.setProperty("filter", pattern)
         widget.setProperty("fileName", getattr(self.obj, name))
+        widget.setMinimumWidth(FILE_WIDTH)
         widget.connect(
             widget,
             QtCore.SIGNAL("fileNameSelected(const QString &)"),

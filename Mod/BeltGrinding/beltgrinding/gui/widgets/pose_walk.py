@@ -10,6 +10,7 @@ import FreeCADGui as Gui
 import numpy as np
 
 from ...base.frames import to_abc
+from ...objects import robot_path
 from ...objects.kinds import Document, DocumentObject
 from ...objects.living import GONE
 from ..common.compat import QtCore, QtGui, translate
@@ -76,7 +77,7 @@ class PoseWalk(QtGui.QWidget):
         """Walks another program, from its first pose."""
         arrays = self.paths[index].Proxy.arrays(self.paths[index])
         self.view.robot.follow(arrays.get("joints_deg"), arrays.get("external"))
-        self.view.set_path(arrays["frames"])
+        self.view.set_path(arrays["frames"], robot_path.as_run(self.paths[index]))
         count = len(arrays["frames"])
         for widget in (self.slider, self.number):
             widget.setRange(1, max(count, 1))

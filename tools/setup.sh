@@ -25,7 +25,7 @@ packages_build=(g++ cmake ninja-build ccache libeigen3-dev pybind11-dev python3-
 packages_run=(freecad python3-numpy python3-jsonschema python3-matplotlib python3-pil libjs-three
     python3-dask python3-distributed python3-openturns xvfb xauth libgl1-mesa-dri)
 packages_docs=(mkdocs mkdocs-material doxygen graphviz)
-packages_test=(pkg-config python3-pykdl "${packages_docs[@]}" weasyprint poppler-utils zsh fish groff-base chromium python3-pytest python3-pytest-xdist python3-scipy python3-h5py python3-yaml mypy pmccabe calculix-ccx cloudcompare slurmctld slurmd slurm-client)
+packages_test=(pkg-config libxtst6 python3-pykdl "${packages_docs[@]}" weasyprint poppler-utils zsh fish groff-base chromium python3-pytest python3-pytest-xdist python3-scipy python3-h5py python3-yaml mypy pmccabe calculix-ccx cloudcompare slurmctld slurmd slurm-client)
 
 say() { printf '%s\n' "$*" >&2; }
 

@@ -567,14 +567,14 @@ def test_arcs_lie_between_the_ways_beside_their_corner():
     moves = [wholes.Move(kind, one, np.zeros(6), zone=zone) for kind, one, zone in (("PTP", a, 0), ("LIN", b, 100), ("LIN", c, 2))]  # fmt: skip
     ((move, places),) = corners.rounded(moves, 1.0)
     assert move is moves[1]
-    points = np.array([one[:3, 3] for one in places])
+    points = np.array([one.frame[:3, 3] for one in places])
     assert points[0] == pytest.approx([6, 0, 0]) and points[-1] == pytest.approx([10, 4, 0])
     assert points[len(points) // 2] == pytest.approx([9, 1, 0])  # a parabola's middle
     moves[1].zone = 0.0
     assert not list(corners.rounded(moves, 1.0))
     moves[1].zone = -1.0
     ((_, places),) = corners.rounded(moves, 1.0)
-    assert places[0][:3, 3] == pytest.approx([9, 0, 0])
+    assert places[0].frame[:3, 3] == pytest.approx([9, 0, 0])
 
 
 @pytest.mark.slow

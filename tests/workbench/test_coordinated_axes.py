@@ -175,6 +175,8 @@ def test_it_reads_again_with_its_axes(name, turned, tmp_path):
     with pytest.raises(InputError, match="E1 carries the part and moves in the passes"):
         writing.write(file, job, whole)
     assert not file.exists()
+    with pytest.raises(InputError, match="external axes are written as .src"):
+        writing.write(tmp_path / "whole.script", job, whole)
     writing.write(file, job, whole, bases=BASES[name])
     text = file.read_text()
     assert "E1 moves in the passes" in text

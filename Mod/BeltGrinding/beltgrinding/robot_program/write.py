@@ -23,7 +23,7 @@ from ..programs.force_device import of_job
 from ..programs.program import Motion, Posture, Program
 from ..programs.registry import read_program
 from ..programs.writers.frames import words_of_cell
-from ..programs.writers.sheet import Load
+from ..programs.writers.sheet import WITH_EXTERNAL, Load
 from ..programs.writers.writer import write_program
 from . import whole as wholes
 from .moves import Move, Whole
@@ -118,10 +118,13 @@ def write(
             count=len(whole.problems),
         )
     robot = records.plain(job.robot)
+    if bases is None:  # languages without external axes are refused for that
+        written = file.suffix.lower() in WITH_EXTERNAL
+        bases = _set_base(robot) if written else np.linalg.inv(_frames(robot)[0])
     options: dict[str, Any] = {
         "form": form,
         "tools": _frames(robot)[1] if tools is None else tools,
-        "bases": _set_base(robot) if bases is None else bases,
+        "bases": bases,
         "force_device": of_job(job),
         "pace": robot_time.limits(job).pace,
         "joint_percent": job.robot.program.joint_speed_percent,
@@ -149,7 +152,7 @@ def _set_base(robot: Json) -> Floats:
             raise InputError(
                 "robot_program.base_moves",
                 "{key}: {name} carries the part and moves in the passes; only the controller's own base goes with it: couple "
-                "one to the axis there, and give its number or name (--base)",
+                "one to the axis there, and give its number or name (program robot --base)",
                 key="robot.external_axes",
                 name=external_axes.NAME.format(k + 1),
             )

@@ -17,8 +17,8 @@ class Ways {
   public:
     Ways(const ArmScene& scene, double clearance, double resolution)
         : scene_(scene), clearance_(clearance), resolution_(resolution) {}
-    bool free(const Joints& q) const { return !scene_.within(q, clearance_); }
-    bool free(const Joints& a, const Joints& b) const {
+    bool free(const Coordinates& q) const { return !scene_.within(q, clearance_); }
+    bool free(const Coordinates& a, const Coordinates& b) const {
         return !scene_.on_way(a, b, clearance_, resolution_);
     }
 
@@ -28,7 +28,7 @@ class Ways {
 };
 
 /// Between two random places of the way the straight way, where it is free.
-void shorten(std::vector<Joints>& way, const Ways& ways, const LinkOptions& options,
+void shorten(std::vector<Coordinates>& way, const Ways& ways, const LinkOptions& options,
              const RunContext& context) {
     std::mt19937 random(options.seed);
     // Not by a distribution, whose numbers differ from library to library.
@@ -40,11 +40,12 @@ void shorten(std::vector<Joints>& way, const Ways& ways, const LinkOptions& opti
         if (a > b) std::swap(a, b);
         const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
         if (i == j) continue;
-        const Joints from = way[i] + (a - std::floor(a)) * (way[i + 1] - way[i]);
-        const Joints to = way[j] + (b - std::floor(b)) * (way[j + 1] - way[j]);
+        const Coordinates from = way[i] + (a - std::floor(a)) * (way[i + 1] - way[i]);
+        const Coordinates to = way[j] + (b - std::floor(b)) * (way[j + 1] - way[j]);
         if (!ways.free(from, to)) continue;
-        std::vector<Joints> next(way.begin(), way.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-        for (const Joints& q : {from, to})
+        std::vector<Coordinates> next(way.begin(),
+                                      way.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+        for (const Coordinates& q : {from, to})
             if ((q - next.back()).cwiseAbs().maxCoeff() > kSame) next.push_back(q);
         for (std::size_t n = j + 1; n < way.size(); ++n)
             if ((way[n] - next.back()).cwiseAbs().maxCoeff() > kSame) next.push_back(way[n]);
@@ -62,7 +63,7 @@ void shorten(std::vector<Joints>& way, const Ways& ways, const LinkOptions& opti
 
 }  // namespace
 
-std::optional<Link> find_link(const ArmScene& scene, const Joints& from, const Joints& to,
+std::optional<Link> find_link(const ArmScene& scene, const Coordinates& from, const Coordinates& to,
                               const LinkOptions& options, const RunContext& context) {
     if (!(options.clearance > 0.0) || !(options.resolution > 0.0)) {
         throw InputError("links.options",
@@ -76,9 +77,10 @@ std::optional<Link> find_link(const ArmScene& scene, const Joints& from, const J
         if (ways.free(from, to)) return link;
         link.straight = false;
         link.joints = rrt_connect(
-            scene.arm(), from, to, [&](const Joints& q) { return ways.free(q); },
-            [&](const Joints& a, const Joints& b) { return ways.free(a, b); }, options.seed,
-            options.iterations, context);
+            scene.lower(), scene.upper(), from, to,
+            [&](const Coordinates& q) { return ways.free(q); },
+            [&](const Coordinates& a, const Coordinates& b) { return ways.free(a, b); },
+            options.seed, options.iterations, context);
         if (link.joints.empty()) continue;
         shorten(link.joints, ways, options, context);
         return link;

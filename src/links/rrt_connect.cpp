@@ -19,11 +19,20 @@ namespace {
 namespace ob = ompl::base;
 namespace og = ompl::geometric;
 
-constexpr double kRange = 0.7;  // rad, the longest motion that is added to a tree
+constexpr double kRange = 0.7;  // rad or m, the longest motion that is added to a tree
 
-Joints joints_of(const ob::State* state) {
-    return Eigen::Map<const Joints>(state->as<ob::RealVectorStateSpace::StateType>()->values);
-}
+/// Of a state of a space with so many rows.
+class Reading {
+  public:
+    explicit Reading(Eigen::Index size) : size_(size) {}
+    Coordinates operator()(const ob::State* state) const {
+        return Eigen::Map<const Eigen::VectorXd>(
+            state->as<ob::RealVectorStateSpace::StateType>()->values, size_);
+    }
+
+  private:
+    Eigen::Index size_;
+};
 
 class SeededSampler : public ob::RealVectorStateSampler {
   public:
@@ -36,10 +45,11 @@ class SeededSampler : public ob::RealVectorStateSampler {
 class Joined : public ob::MotionValidator {
   public:
     Joined(const ob::SpaceInformationPtr& information,
-           const std::function<bool(const Joints&, const Joints&)>& joined)
-        : ob::MotionValidator(information), joined_(joined) {}
+           const std::function<bool(const Coordinates&, const Coordinates&)>& joined,
+           const Reading& reading)
+        : ob::MotionValidator(information), joined_(joined), reading_(reading) {}
     bool checkMotion(const ob::State* a, const ob::State* b) const override {
-        return joined_(joints_of(a), joints_of(b));
+        return joined_(reading_(a), reading_(b));
     }
     bool checkMotion(const ob::State* a, const ob::State* b,
                      std::pair<ob::State*, double>& last) const override {
@@ -49,30 +59,33 @@ class Joined : public ob::MotionValidator {
     }
 
   private:
-    const std::function<bool(const Joints&, const Joints&)>& joined_;
+    const std::function<bool(const Coordinates&, const Coordinates&)>& joined_;
+    Reading reading_;
 };
 
 ob::ScopedState<ob::RealVectorStateSpace> state_of(const ob::StateSpacePtr& space,
-                                                   const Joints& q) {
+                                                   const Coordinates& q) {
     ob::ScopedState<ob::RealVectorStateSpace> state(space);
-    for (unsigned j = 0; j < 6; ++j) state[j] = q[j];
+    for (unsigned j = 0; j < q.size(); ++j) state[j] = q[j];
     return state;
 }
 
 }  // namespace
 
-std::vector<Joints> rrt_connect(const RobotArm& arm, const Joints& from, const Joints& to,
-                                const std::function<bool(const Joints&)>& free,
-                                const std::function<bool(const Joints&, const Joints&)>& joined,
-                                std::uint32_t seed, std::size_t iterations,
-                                const RunContext& context) {
+std::vector<Coordinates> rrt_connect(
+    const Coordinates& lower, const Coordinates& upper, const Coordinates& from,
+    const Coordinates& to, const std::function<bool(const Coordinates&)>& free,
+    const std::function<bool(const Coordinates&, const Coordinates&)>& joined, std::uint32_t seed,
+    std::size_t iterations, const RunContext& context) {
     ompl::msg::noOutputHandler();
-    auto space = std::make_shared<ob::RealVectorStateSpace>(6);
-    ob::RealVectorBounds bounds(6);
-    for (unsigned j = 0; j < 6; ++j) {
+    const auto size = static_cast<unsigned>(from.size());
+    const Reading joints_of(from.size());
+    auto space = std::make_shared<ob::RealVectorStateSpace>(size);
+    ob::RealVectorBounds bounds(size);
+    for (unsigned j = 0; j < size; ++j) {
         // The ends lie within by rounding.
-        bounds.setLow(j, std::min({arm.lower()[j], from[j], to[j]}));
-        bounds.setHigh(j, std::max({arm.upper()[j], from[j], to[j]}));
+        bounds.setLow(j, std::min({lower[j], from[j], to[j]}));
+        bounds.setHigh(j, std::max({upper[j], from[j], to[j]}));
     }
     space->setBounds(bounds);
     space->setStateSamplerAllocator([seed](const ob::StateSpace* one) {
@@ -81,7 +94,7 @@ std::vector<Joints> rrt_connect(const RobotArm& arm, const Joints& from, const J
     auto information = std::make_shared<ob::SpaceInformation>(space);
     information->setStateValidityChecker(
         [&](const ob::State* state) { return free(joints_of(state)); });
-    information->setMotionValidator(std::make_shared<Joined>(information, joined));
+    information->setMotionValidator(std::make_shared<Joined>(information, joined, joints_of));
     information->setup();
     auto problem = std::make_shared<ob::ProblemDefinition>(information);
     problem->setStartAndGoalStates(state_of(space, from), state_of(space, to));
@@ -94,7 +107,7 @@ std::vector<Joints> rrt_connect(const RobotArm& arm, const Joints& from, const J
     const ob::PlannerStatus status = planner.solve(ob::PlannerTerminationCondition(
         [&] { return context.cancelled() || ++asked > iterations; }));
     context.throw_if_cancelled();
-    std::vector<Joints> way;
+    std::vector<Coordinates> way;
     if (status != ob::PlannerStatus::EXACT_SOLUTION) return way;
     const auto* path = problem->getSolutionPath()->as<og::PathGeometric>();
     for (std::size_t n = 0; n < path->getStateCount(); ++n)

@@ -6,16 +6,16 @@
 #include <vector>
 
 #include "beltgrinding/run_context.h"
-#include "robot/robot_arm.h"
+#include "robot/external_axes.h"
 
 namespace beltgrinding {
 
-/// OMPL's RRT-Connect between two places of the joints, within their limits; empty: no way found.
-/// Its samples are those of `seed` alone, whatever else of OMPL runs.
-std::vector<Joints> rrt_connect(const RobotArm& arm, const Joints& from, const Joints& to,
-                                const std::function<bool(const Joints&)>& free,
-                                const std::function<bool(const Joints&, const Joints&)>& joined,
-                                std::uint32_t seed, std::size_t iterations,
-                                const RunContext& context);
+/// OMPL's RRT-Connect between two places of joints and external axes, within their limits; empty:
+/// no way found. Its samples are those of `seed` alone, whatever else of OMPL runs.
+std::vector<Coordinates> rrt_connect(
+    const Coordinates& lower, const Coordinates& upper, const Coordinates& from,
+    const Coordinates& to, const std::function<bool(const Coordinates&)>& free,
+    const std::function<bool(const Coordinates&, const Coordinates&)>& joined, std::uint32_t seed,
+    std::size_t iterations, const RunContext& context);
 
 }  // namespace beltgrinding

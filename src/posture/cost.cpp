@@ -19,19 +19,20 @@ double beneath(double value, double wanted) {
 
 }  // namespace
 
-double Cost::slow(const Joints& a, const Joints& b, double duration) const {
+double Cost::slow(const Coordinates& a, const Coordinates& b, double duration) const {
     const double least = (b - a).cwiseAbs().cwiseQuotient(options_.speed).maxCoeff();
     return kSlow * std::max(0.0, least - duration);
 }
 
-double Cost::acceleration(const Joints& a, const Joints& b, const Joints& c, double before,
-                          double after) const {
-    const Joints change =
+double Cost::acceleration(const Coordinates& a, const Coordinates& b, const Coordinates& c,
+                          double before, double after) const {
+    const Coordinates change =
         (c - b) / std::max(after, kLeastTime) - (b - a) / std::max(before, kLeastTime);
     return kSmooth * change.cwiseQuotient(options_.speed).squaredNorm();
 }
 
-double Cost::place(const Joints& q) const {
+double Cost::place(const Coordinates& at) const {
+    const Joints q = at.head<6>();
     const Joints room = (q - arm_.lower()).cwiseMin(arm_.upper() - q);
     double sum = beneath(std::max(0.0, room.minCoeff()), kLimitNear);
     if (options_.singularity > 0.0) {

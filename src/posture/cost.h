@@ -13,19 +13,19 @@ class Cost {
     Cost(const RobotArm& arm, const PostureOptions& options) : arm_(arm), options_(options) {}
 
     /// Of a link.
-    double travel(const Joints& a, const Joints& b) const {
+    double travel(const Coordinates& a, const Coordinates& b) const {
         return (b - a).cwiseAbs().cwiseQuotient(options_.speed).sum();
     }
     /// s that the joints' speeds take longer than `duration`, weighed.
-    double slow(const Joints& a, const Joints& b, double duration) const;
-    double edge(const Joints& a, const Joints& b, double duration) const {
+    double slow(const Coordinates& a, const Coordinates& b, double duration) const;
+    double edge(const Coordinates& a, const Coordinates& b, double duration) const {
         return travel(a, b) + slow(a, b, duration);
     }
     /// At the pose between two motions.
-    double acceleration(const Joints& a, const Joints& b, const Joints& c, double before,
-                        double after) const;
+    double acceleration(const Coordinates& a, const Coordinates& b, const Coordinates& c,
+                        double before, double after) const;
     /// Nearness to limits and singularities, for a second there.
-    double place(const Joints& q) const;
+    double place(const Coordinates& at) const;
 
   private:
     const RobotArm& arm_;

@@ -22,7 +22,7 @@ double accelerated(const PostureOptions& options, const std::vector<PosturePose>
                    std::size_t n) {
     const bool before = follows(way, n), after = follows(way, n + 1);
     double time = 0.0, most = 0.0;
-    Joints change = Joints::Zero();
+    Coordinates change = Coordinates::Zero(options.speed.size());
     if (before) {
         change -= (way[n].q - way[n - 1].q) / way[n].duration;
         time += 0.5 * way[n].duration;
@@ -31,15 +31,15 @@ double accelerated(const PostureOptions& options, const std::vector<PosturePose>
         change += (way[n + 1].q - way[n].q) / way[n + 1].duration;
         time += 0.5 * way[n + 1].duration;
     }
-    for (int j = 0; j < 6 && time > 0.0; ++j) {
+    for (Eigen::Index j = 0; j < change.size() && time > 0.0; ++j) {
         if (options.acceleration[j] > 0.0)
             most = std::max(most, std::abs(change[j]) / time / options.acceleration[j]);
     }
     return most;
 }
 
-/// rad/s, on the motion to n.
-Joints speed(const std::vector<PosturePose>& way, std::size_t n) {
+/// rad/s, m/s, on the motion to n.
+Coordinates speed(const std::vector<PosturePose>& way, std::size_t n) {
     return (way[n].q - way[n - 1].q) / way[n].duration;
 }
 
@@ -47,13 +47,13 @@ Joints speed(const std::vector<PosturePose>& way, std::size_t n) {
 /// accelerations at its ends, each from a motion to the next.
 double jerked(const PostureOptions& options, const std::vector<PosturePose>& way, std::size_t n) {
     if (n < 2 || !follows(way, n - 1) || !follows(way, n) || !follows(way, n + 1)) return 0.0;
-    const Joints begin =
+    const Coordinates begin =
         2.0 * (speed(way, n) - speed(way, n - 1)) / (way[n].duration + way[n - 1].duration);
-    const Joints end =
+    const Coordinates end =
         2.0 * (speed(way, n + 1) - speed(way, n)) / (way[n + 1].duration + way[n].duration);
-    const Joints jerk = (end - begin) / way[n].duration;
+    const Coordinates jerk = (end - begin) / way[n].duration;
     double most = 0.0;
-    for (int j = 0; j < 6; ++j) {
+    for (Eigen::Index j = 0; j < jerk.size(); ++j) {
         if (options.jerk[j] > 0.0) most = std::max(most, std::abs(jerk[j]) / options.jerk[j]);
     }
     return most;

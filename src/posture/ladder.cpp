@@ -18,30 +18,40 @@ constexpr double kSoft = 3.0;    // times the clearance: nearer begins to cost
 constexpr double kAlike = 1e-6;  // rad, between joints that are the same but for whole turns
 
 /// Whether two solutions differ by whole turns of joints only.
-bool turned_alike(const Joints& a, const Joints& b) {
+bool turned_alike(const Coordinates& a, const Coordinates& b) {
     for (int j = 0; j < 6; ++j) {
         if (std::abs(std::remainder(a[j] - b[j], 2.0 * M_PI)) > kAlike) return false;
     }
+    for (Eigen::Index j = 6; j < a.size(); ++j)
+        if (std::abs(a[j] - b[j]) > kAlike) return false;
     return true;
 }
 
 }  // namespace
 
-std::size_t Window::number(const std::array<int, 3>& sample) const {
+std::size_t Window::number(const std::array<int, kFreedoms>& sample) const {
     std::size_t n = 0;
-    for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t k = 0; k < kFreedoms; ++k)
         n = n * static_cast<std::size_t>(count(k)) + static_cast<std::size_t>(sample[k] - low[k]);
     return n;
 }
 
-std::array<int, 3> Window::sample(std::size_t number) const {
-    std::array<int, 3> found{};
-    for (std::size_t k = 3; k-- > 0;) {
+std::array<int, kFreedoms> Window::sample(std::size_t number) const {
+    std::array<int, kFreedoms> found{};
+    for (std::size_t k = kFreedoms; k-- > 0;) {
         const auto n = static_cast<std::size_t>(count(k));
         found[k] = low[k] + static_cast<int>(number % n);
         number /= n;
     }
     return found;
+}
+
+Coordinates with_axes(const ArmScene& scene, const Joints& q, const Free& free) {
+    Coordinates at = scene.axes().standing(q);
+    for (Eigen::Index j = 6; j < at.size(); ++j)
+        at[j] = std::clamp(at[j] + free[kOfContact + static_cast<std::size_t>(j - 6)],
+                           scene.lower()[j], scene.upper()[j]);
+    return at;
 }
 
 std::vector<Joints> turns_within(const RobotArm& arm, const Joints& q, const Joints& near,
@@ -95,17 +105,20 @@ Ladder::Ladder(const ArmScene& scene, const std::vector<PassPose>& poses,
         bounds_[i][2] =
             (poses[i].base_from_tcp.translation() - poses[i - 1].base_from_tcp.translation())
                 .norm();
+        // The tool goes straight in the frame that goes with the part, whatever the axes do.
+        for (std::size_t k = kOfContact; k < kFreedoms; ++k)
+            bounds_[i][k] = std::numeric_limits<double>::infinity();
     }
 }
 
-void Ladder::build(const std::vector<Window>& windows, const std::array<double, 3>& spacing,
+void Ladder::build(const std::vector<Window>& windows, const std::array<double, kFreedoms>& spacing,
                    int most_steps, const RunContext& context) {
     spacing_ = spacing;
     rungs_.assign(poses_.size(), {});
     for (std::size_t i = 0; i < rungs_.size(); ++i) {
         rungs_[i].window = windows[i];
         rungs_[i].begins_pass = i == 0 || poses_[i].begins;
-        for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t k = 0; k < kFreedoms; ++k) {
             const double steps = spacing[k] > 0.0 ? bounds_[i][k] / spacing[k] : 0.0;
             rungs_[i].steps[k] = static_cast<int>(std::min<double>(steps + 1e-9, most_steps));
         }
@@ -116,10 +129,11 @@ void Ladder::build(const std::vector<Window>& windows, const std::array<double, 
 }
 
 Free Ladder::free(std::size_t rung, std::uint32_t sample) const {
-    const std::array<int, 3> at = rungs_[rung].window.sample(sample);
+    const std::array<int, kFreedoms> at = rungs_[rung].window.sample(sample);
     Free free{};
-    for (std::size_t k = 0; k < 3; ++k) {
-        free[k] = std::clamp(at[k] * spacing_[k], -options_.free[k].most, options_.free[k].most);
+    for (std::size_t k = 0; k < kFreedoms; ++k) {
+        const FreeRange& range = options_.free[k];
+        free[k] = std::clamp(at[k] * spacing_[k], range.low(), range.most);
     }
     return free;
 }
@@ -128,18 +142,21 @@ void Ladder::fill(std::size_t i) {
     Rung& rung = rungs_[i];
     const std::size_t samples = rung.window.size();
     const std::size_t turns = std::clamp<std::size_t>(kVertices / (8 * samples), 4, kMostTurns);
+    const Joints home = options_.home.head<6>();
     for (std::size_t s = 0; s < samples; ++s) {
         rung.begins.push_back(static_cast<std::uint32_t>(rung.vertices.size()));
         const auto sample = static_cast<std::uint32_t>(s);
+        const Free at = free(i, sample);
         const Frame base_from_tcp =
-            moved(scene_, poses_[i].base_from_tcp, free(i, sample), options_.wheel_radius);
-        for (const ArmSolution& one :
-             inverse(scene_.arm(), scene_.robot_from_flange(base_from_tcp), options_.home)) {
+            moved(scene_, poses_[i].base_from_tcp, at, options_.wheel_radius);
+        const Frame robot_from_flange =
+            scene_.robot_from_flange(base_from_tcp, with_axes(scene_, Joints::Zero(), at));
+        for (const ArmSolution& one : inverse(scene_.arm(), robot_from_flange, home)) {
             rung.solved = true;
-            for (const Joints& q : turns_within(scene_.arm(), one.q, options_.home, turns)) {
+            for (const Joints& q : turns_within(scene_.arm(), one.q, home, turns)) {
                 Vertex vertex;
-                vertex.q = q;
-                vertex.place = times_[i] * cost_.place(q);
+                vertex.q = with_axes(scene_, q, at);
+                vertex.place = times_[i] * cost_.place(vertex.q);
                 vertex.sample = sample;
                 vertex.branch = static_cast<std::int8_t>(one.branch);
                 rung.vertices.push_back(vertex);
@@ -171,37 +188,40 @@ void Ladder::link(std::size_t i, const Rung* before) {
     }
 }
 
+/// From the vertices of a sample of the rung before, by those that are cheaper than what it has.
+void Ladder::follow_from(const Rung& before, std::size_t sample, double duration,
+                         Vertex& vertex) const {
+    for (std::uint32_t u = before.begins[sample]; u < before.begins[sample + 1]; ++u) {
+        const Vertex& from = before.vertices[u];
+        if (from.branch != vertex.branch || from.cost >= vertex.cost ||
+            (from.q - vertex.q).cwiseAbs().maxCoeff() > options_.flip)
+            continue;
+        const double cost = from.cost + cost_.edge(from.q, vertex.q, duration);
+        if (cost < vertex.cost) {
+            vertex.cost = cost;
+            vertex.before = static_cast<std::int32_t>(u);
+        }
+    }
+}
+
 void Ladder::follow(std::size_t i) {
     const Rung& before = rungs_[i - 1];
     Rung& rung = rungs_[i];
-    const double duration = poses_[i].duration;
     for (Vertex& vertex : rung.vertices) {
         vertex.cost = kNone;
         vertex.before = -1;
         vertex.cut_from = -1;
-        const std::array<int, 3> at = rung.window.sample(vertex.sample);
-        std::array<int, 3> low{}, high{};
-        for (std::size_t k = 0; k < 3; ++k) {
-            low[k] = std::max(before.window.low[k], at[k] - rung.steps[k]);
-            high[k] = std::min(before.window.high[k], at[k] + rung.steps[k]);
+        const std::array<int, kFreedoms> at = rung.window.sample(vertex.sample);
+        Window beside;
+        bool any = true;
+        for (std::size_t k = 0; k < kFreedoms; ++k) {
+            beside.low[k] = std::max(before.window.low[k], at[k] - rung.steps[k]);
+            beside.high[k] = std::min(before.window.high[k], at[k] + rung.steps[k]);
+            any = any && beside.low[k] <= beside.high[k];
         }
-        for (int a = low[0]; a <= high[0]; ++a) {
-            for (int b = low[1]; b <= high[1]; ++b) {
-                for (int c = low[2]; c <= high[2]; ++c) {
-                    const std::size_t s = before.window.number({a, b, c});
-                    for (std::uint32_t u = before.begins[s]; u < before.begins[s + 1]; ++u) {
-                        const Vertex& from = before.vertices[u];
-                        if (from.branch != vertex.branch || from.cost >= vertex.cost ||
-                            (from.q - vertex.q).cwiseAbs().maxCoeff() > options_.flip)
-                            continue;
-                        const double cost = from.cost + cost_.edge(from.q, vertex.q, duration);
-                        if (cost < vertex.cost) {
-                            vertex.cost = cost;
-                            vertex.before = static_cast<std::int32_t>(u);
-                        }
-                    }
-                }
-            }
+        for (std::size_t n = 0; any && n < beside.size(); ++n) {
+            const std::size_t sample = before.window.number(beside.sample(n));
+            follow_from(before, sample, poses_[i].duration, vertex);
         }
         vertex.cost += vertex.place;
     }
@@ -291,7 +311,7 @@ bool Ladder::look_at(std::size_t i, Vertex& vertex) {
     return look_at_arm(i, vertex) || of_tool;
 }
 
-double Ladder::near_cost(std::size_t i, const Joints& q, ArmScene::Pairs pairs) const {
+double Ladder::near_cost(std::size_t i, const Coordinates& q, ArmScene::Pairs pairs) const {
     const double clearance = options_.clearance;
     if (!scene_.within(q, kSoft * clearance, pairs)) return 0.0;
     const bool nearer = scene_.within(q, clearance, pairs).has_value();
@@ -321,7 +341,7 @@ bool Ladder::look_at_tool(std::size_t i, const Vertex& vertex) {
 bool Ladder::look_at_arm(std::size_t i, Vertex& vertex) {
     if (vertex.seen != Seen::kNot) return false;
     Rung& rung = rungs_[i];
-    const Joints q = vertex.q;
+    const Coordinates q = vertex.q;
     const auto met = scene_.within(q, 0.0, ArmScene::Pairs::kOfArm);
     const double more = met ? kMetCost : near_cost(i, q, ArmScene::Pairs::kOfArm);
     const Seen seen = met ? Seen::kMet : (more > 0.0 ? Seen::kNear : Seen::kFree);

@@ -21,11 +21,13 @@ constexpr std::size_t kMostSamples = 4000;  // of a pose
 void check(const std::vector<PassPose>& poses, const PostureOptions& options, const RobotArm& arm) {
     std::size_t samples = 1;
     for (const FreeRange& one : options.free) {
-        if (!std::isfinite(one.most) || one.most < 0.0 || !(one.spacing > 0.0)) {
+        if (!std::isfinite(one.most) || one.most < 0.0 || !(one.low() <= 0.0) ||
+            !(one.spacing > 0.0)) {
             throw InputError("posture.free",
                              "posture: what is free must be zero or positive, its samples apart");
         }
-        const double many = 2.0 * std::ceil(one.most / one.spacing) + 1.0;
+        const double many =
+            std::ceil(one.most / one.spacing) + std::ceil(-one.low() / one.spacing) + 1.0;
         samples *= static_cast<std::size_t>(std::min(many, 1e5));
         samples = std::min<std::size_t>(samples, 10 * kMostSamples);
     }
@@ -60,30 +62,48 @@ int samples_to(double most, double spacing) {
 
 Window whole(const PostureOptions& options) {
     Window window;
-    for (std::size_t k = 0; k < 3; ++k) {
-        window.high[k] = samples_to(options.free[k].most, options.free[k].spacing);
-        window.low[k] = -window.high[k];
+    for (std::size_t k = 0; k < kFreedoms; ++k) {
+        const FreeRange& range = options.free[k];
+        window.high[k] = samples_to(range.most, range.spacing);
+        window.low[k] = -samples_to(-range.low(), range.spacing);
     }
     return window;
+}
+
+/// What holds both.
+Window joined(const Window& a, const Window& b) {
+    Window all = a;
+    for (std::size_t k = 0; k < kFreedoms; ++k) {
+        all.low[k] = std::min(a.low[k], b.low[k]);
+        all.high[k] = std::max(a.high[k], b.high[k]);
+    }
+    return all;
 }
 
 /// Of a finer level with this spacing, round what the level before has chosen.
 std::vector<Window> beside(const std::vector<Window>& windows, const Ladder& ladder,
                            const std::vector<Ladder::Step>& way, const PostureOptions& options,
-                           const std::array<double, 3>& spacing) {
+                           const std::array<double, kFreedoms>& spacing) {
     std::vector<Window> finer = windows;
+    std::size_t last = windows.size();
     for (const Ladder::Step& step : way) {
         if (step.vertex < 0) continue;
         const Rung& rung = ladder.rung(step.rung);
         const auto sample =
             rung.window.sample(rung.vertices[static_cast<std::size_t>(step.vertex)].sample);
-        for (std::size_t k = 0; k < 3; ++k) {
+        Window round = finer[step.rung];
+        for (std::size_t k = 0; k < kFreedoms; ++k) {
             if (windows[step.rung].low[k] == windows[step.rung].high[k]) continue;
             const int end = samples_to(options.free[k].most, spacing[k]);
-            const int middle = std::clamp(kFiner * sample[k], -end, end);
-            finer[step.rung].low[k] = std::max(-end, middle - kBeside);
-            finer[step.rung].high[k] = std::min(end, middle + kBeside);
+            const int begin = -samples_to(-options.free[k].low(), spacing[k]);
+            const int middle = std::clamp(kFiner * sample[k], begin, end);
+            round.low[k] = std::max(begin, middle - kBeside);
+            round.high[k] = std::min(end, middle + kBeside);
         }
+        // Where a pass is cut its pose is there twice, perhaps with axes far apart.
+        const Window both = joined(finer[step.rung], round);
+        finer[step.rung] = step.rung == last && both.size() <= kMostSamples ? both : round;
+        last = step.rung;
     }
     return finer;
 }
@@ -120,7 +140,8 @@ std::vector<PosturePose> told(const Ladder& ladder, const std::vector<Ladder::St
 
 Frame moved(const ArmScene& scene, const Frame& base_from_tcp, const Free& free,
             double wheel_radius) {
-    if (free == Free{}) return base_from_tcp;
+    if (std::all_of(free.begin(), free.begin() + kOfContact, [](double one) { return one == 0.0; }))
+        return base_from_tcp;
     const Eigen::Translation3d axis(0.0, 0.0, -wheel_radius);
     const Frame contact_from_moved = Frame(Eigen::Translation3d(0.0, free[2], 0.0)) *
                                      Eigen::AngleAxisd(free[1], Vec3::UnitX()) * axis *
@@ -139,7 +160,7 @@ PostureCost posture_cost(const ArmScene& scene, const std::vector<PosturePose>& 
     const Cost cost(scene.arm(), options);
     const std::vector<double> times = times_at(poses);
     PostureCost sum;
-    Joints at = options.home;
+    Coordinates at = options.home;
     for (std::size_t n = 0; n < way.size(); ++n) {
         if (!way[n].reached) continue;
         const double duration = poses[way[n].pose].duration;
@@ -162,11 +183,11 @@ PostureCost posture_cost(const ArmScene& scene, const std::vector<PosturePose>& 
 PostureResult find_postures(const ArmScene& scene, const std::vector<PassPose>& poses,
                             const PostureOptions& options, const RunContext& context) {
     check(poses, options, scene.arm());
-    std::array<double, 3> spacing{};
+    std::array<double, kFreedoms> spacing{};
     bool free = false;
-    for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < kFreedoms; ++k) {
         spacing[k] = options.free[k].spacing;
-        free = free || options.free[k].most > 0.0;
+        free = free || options.free[k].any();
     }
     Ladder ladder(scene, poses, options);
     std::vector<Window> windows(poses.size(), whole(options));

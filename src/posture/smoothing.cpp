@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "cost.h"
+#include "ladder.h"
 #include "robot/inverse_kinematics.h"
 
 namespace beltgrinding {
@@ -29,14 +30,15 @@ class Smoothing {
           times_(times_at(poses)),
           way_(way) {}
 
-    void run(const std::array<double, 3>& spacing, const RunContext& context) {
-        std::array<double, 3> step = spacing;
+    void run(const std::array<double, kFreedoms>& spacing, const RunContext& context) {
+        std::array<double, kFreedoms> step = spacing;
         for (int halving = 0; halving < kHalvings; ++halving) {
             for (int sweep = 0; sweep < kSweeps; ++sweep) {
                 context.throw_if_cancelled();
                 bool better = false;
                 for (std::size_t n = 0; n < way_.size(); ++n)
-                    for (std::size_t k = 0; k < 3; ++k) better = shift(n, k, step[k]) || better;
+                    for (std::size_t k = 0; k < kFreedoms; ++k)
+                        better = shift(n, k, step[k]) || better;
                 if (!better) break;
             }
             for (double& one : step) one *= 0.5;
@@ -64,19 +66,19 @@ class Smoothing {
         if (n + 1 == way_.size() || way_[n + 1].link) sum += cost_.travel(way_[n].q, after(n));
         return sum;
     }
-    const Joints& before(std::size_t n) const {
+    const Coordinates& before(std::size_t n) const {
         while (n-- > 0)
             if (way_[n].reached) return way_[n].q;
         return options_.home;
     }
-    const Joints& after(std::size_t n) const {
+    const Coordinates& after(std::size_t n) const {
         while (++n < way_.size())
             if (way_[n].reached) return way_[n].q;
         return options_.home;
     }
 
     bool allowed(std::size_t n, std::size_t k, double value) const {
-        if (std::abs(value) > options_.free[k].most) return false;
+        if (value > options_.free[k].most || value < options_.free[k].low()) return false;
         for (const std::size_t m : {n, n + 1}) {
             if (!follows(m)) continue;
             const double other = way_[m == n ? n - 1 : n + 1].free[k];
@@ -92,24 +94,26 @@ class Smoothing {
         next.base_from_tcp =
             moved(scene_, poses_[now.pose].base_from_tcp, free, options_.wheel_radius);
         std::optional<double> least;
-        for (const ArmSolution& one :
-             inverse(scene_.arm(), scene_.robot_from_flange(next.base_from_tcp), now.q, false)) {
-            const double turned = (one.q - now.q).cwiseAbs().maxCoeff();
+        const Joints near = now.q.head<6>();
+        next.q = with_axes(scene_, near, free);
+        for (const ArmSolution& one : inverse(
+                 scene_.arm(), scene_.robot_from_flange(next.base_from_tcp, next.q), near, false)) {
+            const double turned = (one.q - near).cwiseAbs().maxCoeff();
             if (turned > kJump || (least && turned >= *least)) continue;
             least = turned;
-            next.q = one.q;
+            next.q.head<6>() = one.q;
         }
-        const bool inside = (next.q.array() >= scene_.arm().lower().array()).all() &&
-                            (next.q.array() <= scene_.arm().upper().array()).all();
+        const bool inside = (next.q.array() >= scene_.lower().array()).all() &&
+                            (next.q.array() <= scene_.upper().array()).all();
         return least && inside ? std::optional(next) : std::nullopt;
     }
 
     bool shift(std::size_t n, std::size_t k, double step) {
-        if (!way_[n].reached || options_.free[k].most <= 0.0) return false;
+        if (!way_[n].reached || !options_.free[k].any()) return false;
         const double cost = around(n);
         for (const double side : {step, -step}) {
             Free free = way_[n].free;
-            free[k] = std::clamp(free[k] + side, -options_.free[k].most, options_.free[k].most);
+            free[k] = std::clamp(free[k] + side, options_.free[k].low(), options_.free[k].most);
             if (free[k] == way_[n].free[k] || !allowed(n, k, free[k])) continue;
             const auto next = at(way_[n], free);
             if (!next) continue;
@@ -152,10 +156,10 @@ std::pair<std::size_t, std::size_t> run_of(const std::vector<PosturePose>& way, 
 
 void smooth(const ArmScene& scene, const std::vector<PassPose>& poses,
             const PostureOptions& options, const std::vector<Free>& bounds,
-            const std::array<double, 3>& spacing, std::vector<PosturePose>& way,
+            const std::array<double, kFreedoms>& spacing, std::vector<PosturePose>& way,
             const RunContext& context) {
     const bool nothing = std::all_of(options.free.begin(), options.free.end(),
-                                     [](const FreeRange& one) { return one.most <= 0.0; });
+                                     [](const FreeRange& one) { return !one.any(); });
     if (nothing) return;
     const std::vector<PosturePose> kept = way;
     Smoothing(scene, poses, options, bounds, way).run(spacing, context);

@@ -11,7 +11,7 @@ namespace beltgrinding {
 /// its configuration. Poses that then meet a body keep what they had.
 void smooth(const ArmScene& scene, const std::vector<PassPose>& poses,
             const PostureOptions& options, const std::vector<Free>& bounds,
-            const std::array<double, 3>& spacing, std::vector<PosturePose>& way,
+            const std::array<double, kFreedoms>& spacing, std::vector<PosturePose>& way,
             const RunContext& context);
 
 }  // namespace beltgrinding

@@ -57,7 +57,7 @@ def test_positions_in_pulses_are_joint_targets(tmp_path):
     np.testing.assert_allclose(program.motions[0].joints_deg, [10, 20, -60, 50, 0, 10])
     assert program.motions[1].speed_mm_s == 20.0 and program.motions[1].zone_mm == 0.0
 
-    def pose_of(joints):
+    def pose_of(joints, external):
         return frames.from_abc((joints[0], 0, 0), (0, 0, 180))
 
     arrays = program.path_arrays(50.0, pose_of)
@@ -93,13 +93,13 @@ def test_arcs_and_other_tools_of_joint_targets_are_left_out(tmp_path):
     assert program.lost == 3 and "arc through joint" in str(program.problems[0])
     points = PULSES + "///TOOL 3\n///POSTYPE PULSE\n///PULSE\nC00002=1,2,3,4,5,6\n"
     program = read(tmp_path, at(0), at(2), at(1), points=points, values=RATIOS)
-    arrays = program.path_arrays(9.0, lambda joints: np.eye(4))
+    arrays = program.path_arrays(9.0, lambda joints, external: np.eye(4))
     assert len(arrays["frames"]) == 2 and arrays["rapid"].tolist() == [True, True]
     assert "TOOL 3" in str(program.problems[0])
     # Poses and joint targets of one job go together.
     points = POINTS.replace("TOOL 2", "TOOL 0") + PULSES.replace("C0000", "C0010")
     program = read(tmp_path, at(1), at(100), at(2), points=points, values=RATIOS)
-    arrays = program.path_arrays(9.0, lambda joints: np.eye(4))
+    arrays = program.path_arrays(9.0, lambda joints, external: np.eye(4))
     assert arrays["rapid"].tolist() == [True, False, False] and not program.problems
 
 
@@ -323,4 +323,6 @@ def test_mutated_flow_never_crashes(tmp_path):
             program = inform.read(file, {name: float(v) for name, v in RATIOS.items()})
         except ProgramError:
             continue
-        assert np.isfinite(program.path_arrays(10.0, lambda joints: np.eye(4))["frames"]).all()
+        assert np.isfinite(
+            program.path_arrays(10.0, lambda joints, external: np.eye(4))["frames"]
+        ).all()

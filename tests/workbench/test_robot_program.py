@@ -20,7 +20,7 @@ from beltgrinding.job.workpiece import read_design
 from beltgrinding.planning import commands, rounds
 from beltgrinding.presets import library, robot as robots
 from beltgrinding.programs.registry import read_program
-from beltgrinding.programs.writers import fanuc, krl, rapid
+from beltgrinding.programs.writers import fanuc, inform, krl, rapid
 from beltgrinding.programs.program import Posture
 from beltgrinding.raster import raster_path as raster
 from beltgrinding.robot_program import (
@@ -167,6 +167,7 @@ def test_the_same_seed_plans_the_same_program(laid):
 
 ABB = {**KUKA, "preset": "abb_irb1200_5_90"}
 FANUC = {**KUKA, "preset": "fanuc_m20ia", "base_from_robot": {"position_mm": [-900, 30, -400]}}
+YASKAWA = {**FANUC, "preset": "yaskawa_gp25"}
 
 
 @pytest.mark.parametrize(
@@ -175,7 +176,7 @@ FANUC = {**KUKA, "preset": "fanuc_m20ia", "base_from_robot": {"position_mm": [-9
         ("whole.mod", ABB, [60, 0, 0, 0, 60, 0]),
         ("whole.script", KUKA, HOME),
         ("whole.ls", FANUC, [60, 0, 0, 0, -60, 0]),
-        ("whole.jbi", KUKA, HOME),
+        ("whole.jbi", YASKAWA, [60, 0, 0, 0, -60, 0]),
     ],
 )
 def test_other_languages_have_their_joints_and_configurations(name, robot, home, laid, tmp_path):
@@ -194,6 +195,17 @@ def test_other_languages_have_their_joints_and_configurations(name, robot, home,
             cf = [math.floor(move.joints_deg[k] / 90) for k in (0, 3, 5)]
             # Before axis 1, before the lower arm.
             assert [int(one) for one in found.split(",")] == [*cf, int(move.joints_deg[4] < 0)]
+    if name == "whole.jbi":
+        types, now = [], None
+        for line in text.splitlines():
+            now = line[9:] if line.startswith("///RCONF") else now
+            types += [now] if re.match(r"C\d+=", line) else []
+        assert len(types) == len(whole.moves)
+        for move, one in zip(whole.moves, types):  # before axis 1, the elbow up
+            s, r, t = (move.joints_deg[k] for k in (0, 3, 5))
+            turned = [int(abs(angle) > 180) for angle in (r, t, s)]
+            flip = int(math.cos(math.radians(r)) < 0)
+            assert [int(k) for k in one.split(",")] == [flip, 0, 0, *turned, 0, 0]
     if name == "whole.script":
         assert text.count("movej([") == sum(move.kind == "PTP" for move in whole.moves)
     if name.endswith((".mod", ".script")):
@@ -219,6 +231,10 @@ def test_configurations_in_the_languages_words():
         -3,
         7,
     )
+    assert inform.rconf(front, (0, 0, 0, 0, 5, 0)) == (0, 0, 0, 0, 0, 0)
+    assert inform.rconf(front, (-190, 0, 0, 120, 5, 185)) == (1, 0, 0, 0, 1, 1)
+    assert inform.rconf(Posture(True, False, True, False), (0, 0, 0, -300, 5, 180)) == (0, 0, 1, 1, 0, 0)  # fmt: skip
+    assert inform.rconf(Posture(False, True, True, False), (0, 0, 0, -90, 5, -180)) == (1, 1, 0, 0, 1, 0)  # fmt: skip
     assert fanuc.config(front, (0, 0, 0, 200, -5, -200)) == "N U T, 0, 1, -1"
 
 
@@ -567,14 +583,14 @@ def test_arcs_lie_between_the_ways_beside_their_corner():
     moves = [wholes.Move(kind, one, np.zeros(6), zone=zone) for kind, one, zone in (("PTP", a, 0), ("LIN", b, 100), ("LIN", c, 2))]  # fmt: skip
     ((move, places),) = corners.rounded(moves, 1.0)
     assert move is moves[1]
-    points = np.array([one[:3, 3] for one in places])
+    points = np.array([one.frame[:3, 3] for one in places])
     assert points[0] == pytest.approx([6, 0, 0]) and points[-1] == pytest.approx([10, 4, 0])
     assert points[len(points) // 2] == pytest.approx([9, 1, 0])  # a parabola's middle
     moves[1].zone = 0.0
     assert not list(corners.rounded(moves, 1.0))
     moves[1].zone = -1.0
     ((_, places),) = corners.rounded(moves, 1.0)
-    assert places[0][:3, 3] == pytest.approx([9, 0, 0])
+    assert places[0].frame[:3, 3] == pytest.approx([9, 0, 0])
 
 
 @pytest.mark.slow

@@ -129,7 +129,8 @@ class BruteForce {
                     const Frame frame =
                         moved(scene_, poses_[i].base_from_tcp, free, options_.wheel_radius);
                     for (const auto& one :
-                         inverse(scene_.arm(), scene_.robot_from_flange(frame), options_.home))
+                         inverse(scene_.arm(), scene_.robot_from_flange(frame, options_.home),
+                                 options_.home))
                         for (const Joints& q : turns_within(scene_.arm(), one.q, options_.home, 64))
                             if (!scene_.within(q, 3.0 * options_.clearance))
                                 found.push_back({free, q});
@@ -418,7 +419,7 @@ TEST(Posture, JerkOnACircleIsThatOfAFineSearch) {
         Joints best = near;
         double least = 1.0;
         for (const ArmSolution& one :
-             inverse(arm, scene.robot_from_flange(on_circle(angle)), near, false)) {
+             inverse(arm, scene.robot_from_flange(on_circle(angle), options.home), near, false)) {
             const double turned = (one.q - near).cwiseAbs().maxCoeff();
             if (turned < least) {
                 least = turned;

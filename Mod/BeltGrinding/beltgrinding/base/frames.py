@@ -108,6 +108,17 @@ def rotation(vector: ArrayLike) -> NDArray[np.float64]:
     return found
 
 
+def between(
+    begin: NDArray[np.float64], end: NDArray[np.float64], share: float
+) -> NDArray[np.float64]:
+    """The frame (4, 4) at a share of the straight way from one to another, which turns evenly about one axis."""
+    frame = begin.copy()
+    frame[:3, 3] += share * (end[:3, 3] - begin[:3, 3])
+    vector = rotation_vectors((begin[:3, :3].T @ end[:3, :3])[None])[0]
+    frame[:3, :3] = begin[:3, :3] @ rotation(share * vector)
+    return frame
+
+
 def from_abc(position: Iterable[float], abc_deg: Iterable[float]) -> NDArray[np.float64]:
     """4 x 4 from a position in mm and KUKA's A, B, C in degrees: Rz(A) Ry(B) Rx(C)."""
     a, b, c = (math.radians(angle) for angle in abc_deg)

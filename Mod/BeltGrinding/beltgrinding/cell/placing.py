@@ -62,6 +62,7 @@ class Search:
     def __init__(self, job: Job | Json, context: Context = None) -> None:
         self.job, self.context = typed(job), context or core.RunContext()
         self.robot = records.plain(self.job.robot)
+        reach.refuse_coordinated(self.robot)
         self.arm = known(robots.arm_of(self.robot))
         self.turning = robot_time.limits(self.job).rotation_speed_deg_s
         count = len(self.job.programs)

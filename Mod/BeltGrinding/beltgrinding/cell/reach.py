@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base import kept, records
-from ..base.kinds import Array, Context, Json, known
-from ..engine import InputError
+from ..base.kinds import Array, Context, Facts, Json, known
+from ..engine import Fact, InputError
 from ..job import robot_time
 from ..job.settings import Job, Simulation
 from ..job.typed import typed
+from ..presets import external_axes
 from ..presets.robot import arm_of, checked, given, model_of, name, robot_frame
 from ..presets.robot_model import JOINTS
 from . import tool_path
@@ -51,6 +52,7 @@ def reach(
     in degrees; checks: how many places were looked at). Raises InputError, Cancelled.
     """
     wanted = checked({"preset": robot} if isinstance(robot, str) else robot)
+    refuse_coordinated(wanted)
     if not given(wanted):
         raise InputError(
             "cell.no_robot",
@@ -64,6 +66,39 @@ def reach(
     for key in ("joints", "least", "greatest"):
         found[key] = np.degrees(found[key])
     return found
+
+
+def refuse_coordinated(robot: Json) -> None:
+    """Raises InputError for a job's robot (with its defaults) with external axes that move in the passes."""
+    moving = external_axes.coordinated(robot["external_axes"])
+    if moving:
+        raise InputError(
+            "cell.reach_coordinated",
+            "{key}: {names} moves in the passes, which only a program for the whole robot plans: see there what it reaches, "
+            "or make the axis indexed",
+            key="robot.external_axes",
+            names=_names(moving),
+        )
+
+
+def warnings(job: Job) -> Facts:
+    """What is to be known of ``job_reach`` of a validated job."""
+    robot = records.plain(job.robot)
+    moving = external_axes.coordinated(robot["external_axes"]) if given(robot) else []
+    if not moving:
+        return []
+    return [
+        Fact(
+            "cell.arm_not_followed",
+            "{names} moves in the passes: neither the arm's reach nor its collisions are looked at here; the program for the "
+            "whole robot does",
+            names=_names(moving),
+        )
+    ]
+
+
+def _names(axes: Sequence[int]) -> str:
+    return ", ".join(external_axes.NAME.format(k + 1) for k in axes)
 
 
 def follow(
@@ -93,11 +128,12 @@ def follow(
 def job_reach(
     job: Job | Json, paths: Sequence[core.ToolPath], context: Context = None
 ) -> list[dict[str, Any]]:
-    """``reach`` of each core.ToolPath of a validated job; [] if the job has no robot. Kept for the next of the
+    """``reach`` of each core.ToolPath of a validated job; [] if the job has no robot, or axes that move in the passes
+    (``warnings``). Kept for the next of the
     same ways and times."""
     job = typed(job)
     robot = records.plain(job.robot)
-    if not given(robot):
+    if not given(robot) or external_axes.coordinated(robot["external_axes"]):
         return []
     turning = robot_time.limits(job).rotation_speed_deg_s
     return [_kept_reach(path, robot, job.simulation, turning, context) for path in paths]

@@ -398,6 +398,7 @@ def _reach(arguments):
             file=arguments.job,
             key="robot",
         )
+    reach.refuse_coordinated(given["robot"])
     if arguments.place:
         _place(arguments, given)
         return

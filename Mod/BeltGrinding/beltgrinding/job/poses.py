@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any, TypeAlias
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -11,14 +11,11 @@ from ..base import frames, records
 from ..base.kinds import Array, Facts, Floats, Json, known
 from ..engine import InputError, core
 from ..programs.force_device import ForceDevice
-from ..programs.program import ON_CURVE, share_of_zone, zone_of_share
+from ..programs.program import ON_CURVE, PoseOf, share_of_zone, zone_of_share
 from .settings import Job, Program
 
 RESTS = ("pause_s", "dress")
 DEFAULT_FEED = 100.0  # mm/s, for poses and programs that set none
-PoseOf: TypeAlias = (
-    "Callable[[Sequence[float]], Floats]"  # a frame (4, 4) of joint angles in degrees
-)
 
 
 def program_name(job: Job | Json, index: int) -> str:

@@ -397,6 +397,7 @@ class ExternalAxis:
     lower: float
     upper: float
     max_speed: float
+    motion: Literal["indexed", "coordinated"]
     home: float
     position: float
 

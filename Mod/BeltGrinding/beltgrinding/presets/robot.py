@@ -157,12 +157,37 @@ def standing(robot: Json) -> Floats:
     return found
 
 
-def pose_function(robot: Json) -> Callable[[Sequence[float]], Floats] | None:
-    """A function that gives the pose (4, 4) in the frame of the programs of six joint angles in
-    degrees; None if the job's robot is none. Raises InputError.
+def pose_function(robot: Json) -> Callable[..., Floats] | None:
+    """A function that gives the pose (4, 4) in the frame of the programs of six joint angles in degrees, and of values of
+    the external axes, which may be missing: those that are coordinated count, the others stand as in the passes. None if
+    the job's robot is none. Raises InputError.
     """
     if not given(robot):
         return None
     of = arm(model_of(robot))
-    base, tool = robot_frame(robot, "base_from_robot"), robot_frame(robot, "flange_from_tcp")
-    return lambda joints_deg: base @ of.forward(np.radians(joints_deg)) @ tool
+    base_of, tool = base_function(robot), robot_frame(robot, "flange_from_tcp")
+
+    def pose(joints_deg: Sequence[float], values: Sequence[float] = ()) -> Floats:
+        found: Floats = base_of(values) @ of.forward(np.radians(joints_deg)) @ tool
+        return found
+
+    return pose
+
+
+def base_function(robot: Json) -> Callable[[Sequence[float]], Floats]:
+    """A function that gives the robot's base (4, 4) in the frame of the programs for values of the external axes: as in
+    ``pose_function``. Raises InputError."""
+    axes = robot.get("external_axes", ())
+    standing, moving = robot_frame(robot, BASE), external_axes.coordinated(axes)
+    if not moving:
+        return lambda values: standing
+    at_zero, stand = frame_at_zero(robot), external_axes.at(axes, "position")
+
+    def base_of(values: Sequence[float]) -> Floats:
+        now = list(stand)
+        for k in moving:
+            if k < len(values) and np.isfinite(values[k]):
+                now[k] = float(values[k])
+        return external_axes.base_from_robot(axes, now, at_zero)
+
+    return base_of

@@ -151,6 +151,10 @@ def shortened(fact: Fact, most: int) -> Fact:
     return short
 
 
+# The pose (4, 4) of six joint angles in degrees, and of external axes in mm or degrees, () where a motion has none.
+PoseOf: TypeAlias = Callable[[Sequence[float], Sequence[float]], Floats]
+
+
 @dataclass(frozen=True)
 class Posture:
     """Which of the eight configurations an arm with a spherical wrist is in, as the core's RobotArm.configuration has it."""
@@ -281,7 +285,7 @@ class Program:
         self.problems.append(Problem(file, line, told, text, **arguments))
 
     def path_arrays(
-        self, default_speed_mm_s: float, pose_of: Callable[[Sequence[float]], Floats] | None = None
+        self, default_speed_mm_s: float, pose_of: PoseOf | None = None, external: bool = False
     ) -> dict[str, Array]:
         """Poses as the simulator takes them: dict of frames (n, 4, 4) in mm, feeds (n,) in mm/s,
         forces (n,) in N (-1: none), rapid (n,) bool, lines (n,) int, zones (n,) in mm (0: exact
@@ -290,23 +294,26 @@ class Program:
         left out and becomes a problem. Arcs become chords of ``CHORD_ERROR``, rounded where they meet; after a
         joint target, and after a gap, the robot arrives by a rapid motion. Between points of a spline there is no
         stop.
-        With ``pose_of``, which gives the pose (4, 4) of six joint angles in degrees, joint targets are
-        poses too, and there is joints (n, 6) in degrees, NaN where none are given.
+        With ``pose_of``, which gives the pose (4, 4) of six joint angles in degrees and of external axes, joint
+        targets are poses too, and there is joints (n, 6) in degrees, NaN where none are given. With ``external`` there is
+        external (n, k): where these axes are, mm or degrees; NaN before the first that are given.
         """
         motions = self.in_one_frame()
         if pose_of is None:
             self.tell_joints()
         else:
             motions = [
-                m if m.joints_deg is None else replace(m, pose=pose_of(m.joints_deg))
+                m if m.joints_deg is None else replace(m, pose=pose_of(m.joints_deg, m.external))
                 for m in motions
             ]
         rows: list[list[Any]] = []
         previous: Floats | None = None
         aux: Floats | None = None
         lost, gap = False, 0
+        axes: tuple[float, ...] = ()
         for motion, following in zip(motions, [*motions[1:], None]):
             check()
+            axes = motion.external or axes
             if motion.pose is None:
                 gap = gap or (0 if motion.kind == "PTP" else motion.line)
                 aux, lost = None, True  # where the joint target is, only the robot's geometry tells
@@ -328,13 +335,14 @@ class Program:
             force = -1.0 if motion.force_N is None else motion.force_N
             joints = motion.joints_deg or (math.nan,) * 6
             rows += [
-                [pose, speed, force, rapid, motion.line, joints, 0, math.inf] for pose in poses
+                [pose, speed, force, rapid, motion.line, joints, axes, 0, math.inf]
+                for pose in poses
             ]
             rows[-len(poses)][-2] = gap
             check_count(len(rows), motion)
             rows[-1][-1] = _zone(motion, following)
             previous, aux, lost, gap = poses[-1], None, False, 0
-        columns: list[Sequence[Any]] = list(zip(*rows)) if rows else [[] for _ in range(8)]
+        columns: list[Sequence[Any]] = list(zip(*rows)) if rows else [[] for _ in range(9)]
         frames = np.array(columns[0], dtype=float).reshape(-1, 4, 4)
         arrays = {
             "frames": frames,
@@ -342,11 +350,15 @@ class Program:
             "forces": np.array(columns[2], dtype=float),
             "rapid": np.array(columns[3], dtype=bool),
             "lines": np.array(columns[4], dtype=int),
-            "gaps": np.array(columns[6], dtype=int),
-            "zones": _finite(np.array(columns[7], dtype=float), frames),
+            "gaps": np.array(columns[7], dtype=int),
+            "zones": _finite(np.array(columns[8], dtype=float), frames),
         }
         if pose_of is not None:
             arrays["joints"] = np.array(columns[5], dtype=float).reshape(-1, 6)
+        if external:
+            most = max(map(len, columns[6]), default=0)
+            full = [[*one, *[math.nan] * (most - len(one))] for one in columns[6]]
+            arrays["external"] = np.array(full, dtype=float).reshape(len(full), most)
         return arrays
 
 

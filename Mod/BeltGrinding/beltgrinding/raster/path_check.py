@@ -16,6 +16,7 @@ from ..engine import core
 from ..job import poses
 from ..job.settings import Job, Program
 from ..job.typed import typed
+from ..presets import external_axes
 from ..presets.robot import given
 
 PLUNGES = 0.02  # of the removal; more is told
@@ -121,7 +122,7 @@ def _plunge_share(job: Job, result: Json, seen: Json) -> float | None:
 
 def _reach(job: Job, result: Json, context: Context) -> dict[str, Any] | None:
     robot = records.plain(job.robot)
-    if not given(robot):
+    if not given(robot) or external_axes.coordinated(robot["external_axes"]):
         return None
     steps = job.simulation
     program = records.made(Program, {"poses": poses.list_poses(dict(result))})

@@ -7,12 +7,14 @@ controllers' blends are near to.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from ..base import frames
-from ..base.kinds import Floats
+from ..base.kinds import Floats, Json
 from ..engine import core
+from ..presets import external_axes
 from .moves import Move
 
 LEAST = 0.05  # mm that an arc must leave its corner by to be looked at
@@ -20,9 +22,16 @@ PARTS = 8  # of an arc
 STEP, TURN = 1.0, 0.02  # mm, rad, between places on it
 
 
-def rounded(moves: Sequence[Move], default_mm: float) -> Iterator[tuple[Move, list[Floats]]]:
-    """(motion, base_from_tcp (4, 4) of the places along its arc, the corner itself left out) of the motions at whose end
-    the controller rounds a corner. ``default_mm``: the zone of a motion that gives none."""
+class Place(NamedTuple):
+    """Of an arc."""
+
+    frame: Floats  # (4, 4): base_from_tcp
+    external: tuple[float, ...]
+
+
+def rounded(moves: Sequence[Move], default_mm: float) -> Iterator[tuple[Move, list[Place]]]:
+    """(motion, places along its arc, the corner itself left out) of the motions at whose end the controller rounds a
+    corner. ``default_mm``: the zone of a motion that gives none."""
     for before, move, after in zip(moves[:-2], moves[1:-1], moves[2:]):
         zone = default_mm if move.zone < 0.0 else move.zone
         if zone == 0.0 or move.kind != "LIN" or after.kind != "LIN" or move.joints_deg is None:
@@ -32,19 +41,29 @@ def rounded(moves: Sequence[Move], default_mm: float) -> Iterator[tuple[Move, li
         if min(ways) <= 0.0:
             continue
         reach = min(zone, 0.5 * min(ways))
-        begin, end = (_between(b, one, reach / way) for one, way in zip((a, c), ways))
-        if np.linalg.norm(begin[:3, 3] + end[:3, 3] - 2.0 * b[:3, 3]) < 4.0 * LEAST:
+        corner = Place(b, move.external)
+        begin, end = (
+            _between(corner, Place(one.frame, one.external), reach / way)
+            for one, way in zip((before, after), ways)
+        )
+        if np.linalg.norm(begin.frame[:3, 3] + end.frame[:3, 3] - 2.0 * b[:3, 3]) < 4.0 * LEAST:
             continue
         shares = np.linspace(0.0, 1.0, PARTS + 1)
-        yield move, [_between(_between(begin, b, s), _between(b, end, s), s) for s in shares]
+        yield move, [
+            _between(_between(begin, corner, s), _between(corner, end, s), s) for s in shares
+        ]
 
 
-def way(scene: core.ArmScene, move: Move, places: Sequence[Floats]) -> Floats | None:
-    """(n, 6) rad along an arc, in the posture of its corner; None: the arm does not get there."""
+def way(
+    scene: core.ArmScene, axes: Sequence[Json], move: Move, places: Sequence[Place]
+) -> Floats | None:
+    """(n, 6 + k) along an arc, in the posture of its corner, with the job's external ``axes``; None: the arm does
+    not get there."""
     assert move.joints_deg is not None
-    found, q = [], np.radians(move.joints_deg)
+    found, q = [], external_axes.coordinates(axes, move.joints_deg, move.external)
     for number, place in enumerate(places):
-        part, gets_there = scene.straight_way(q, place, STEP, TURN)
+        end = external_axes.coordinates(axes, move.joints_deg, place.external)
+        part, gets_there = scene.straight_way(q, place.frame, STEP, TURN, end)
         if not gets_there:
             return None
         q = np.asarray(part[-1])
@@ -52,9 +71,6 @@ def way(scene: core.ArmScene, move: Move, places: Sequence[Floats]) -> Floats | 
     return np.concatenate(found)
 
 
-def _between(begin: Floats, end: Floats, share: float) -> Floats:
-    frame = begin.copy()
-    frame[:3, 3] += share * (end[:3, 3] - begin[:3, 3])
-    vector = frames.rotation_vectors((begin[:3, :3].T @ end[:3, :3])[None])[0]
-    frame[:3, :3] = begin[:3, :3] @ frames.rotation(share * vector)
-    return frame
+def _between(begin: Place, end: Place, share: float) -> Place:
+    values = (a + share * (b - a) for a, b in zip(begin.external, end.external))
+    return Place(frames.between(begin.frame, end.frame, share), tuple(values))

@@ -28,10 +28,11 @@ class Stage(NamedTuple):
 
 
 def stages(axes: list[Any]) -> list[Stage]:
-    """From home to the passes; what stays where it is has none."""
+    """From home to the passes, of axes that are indexed; what stays where it is has none."""
     found, now = [], list(external_axes.at(axes, "home"))
+    moving = external_axes.coordinated(axes)
     for number, value in enumerate(external_axes.at(axes, "position")):
-        if now[number] == value:
+        if now[number] == value or number in moving:
             continue
         begin = tuple(now)
         now[number] = value

@@ -24,7 +24,7 @@ class Lifted(Protocol):
 
 
 def off_the_part(scene: core.ArmScene, cell: Cell) -> Lifted:
-    """Joints (6,) with the wheel ``distance`` mm farther off the part along the contact's normal; None: out of reach."""
+    """Joints (6 + k,) with the wheel ``distance`` mm farther off the part along the contact's normal; None: out of reach."""
 
     def lifted(q: Floats, distance: float) -> Floats | None:
         frame = retracted(cell, scene.base_from_tcp(q), distance)

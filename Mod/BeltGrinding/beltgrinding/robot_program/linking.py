@@ -29,7 +29,7 @@ class Linker:
     def find(self, begin: Floats, end: Floats) -> list[dict[str, Any]] | None:
         """Links in a row, as ``ArmScene.link`` gives them, by the user's safe places where no direct way is found; None:
         there is no way."""
-        for places in ([end], *([safe, end] for safe in self.own[1:])):
+        for places in ([end], *([*_stops(safe, begin, end), end] for safe in self.own[1:])):
             found, at = [], begin
             for place in places:
                 one = self._way(at, place)
@@ -61,4 +61,10 @@ class Linker:
         return found
 
     def _off(self, q: Floats) -> lifts.Lifted | None:
-        return None if any(np.array_equal(q, one) for one in self.own) else self.off
+        return None if any(np.array_equal(q[:6], one) for one in self.own) else self.off
+
+
+def _stops(safe: Floats, begin: Floats, end: Floats) -> list[Floats]:
+    """At a safe place of the joints (6,) coordinated external axes go from where they begin to where they end."""
+    stops = [np.concatenate([safe, one[6:]]) for one in (begin, end)]
+    return stops[:1] if np.array_equal(*stops) else stops

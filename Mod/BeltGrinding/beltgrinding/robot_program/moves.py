@@ -18,7 +18,7 @@ class Move:
 
     kind: str  # PTP: by joints; LIN
     frame: Floats  # base_from_tcp at its end, mm
-    joints_deg: Optional[Floats]
+    joints_deg: Optional[Floats] = None
     feed: float = 0.0  # mm/s; PTP: not used
     force: float = -1.0  # N
     zone: float = 0.0  # mm; -1: the job's default

@@ -11,7 +11,7 @@ from ..engine import core
 from ..geometry.body_names import WHEEL
 from ..job import machine as machines
 from ..job.settings import Job
-from ..presets import robot as robots
+from ..presets import external_axes, robot as robots
 
 
 class Scenes(NamedTuple):
@@ -46,9 +46,7 @@ def of_job(
         disc = collision.wheel_body(job.belt_machine.wheel, 0.0)
         whole.append({"name": WHEEL, "frame": "wheel", "mesh": disc})
     arm = known(robots.arm_of(robot))
-    frames = (
-        robots.robot_frame(robot, "base_from_robot"),
-        robots.robot_frame(robot, "flange_from_tcp"),
-    )
-    passes, links = (core.ArmScene(arm, path, one, *frames, context) for one in (near, whole))
+    frames = (robots.frame_at_zero(robot), robots.robot_frame(robot, "flange_from_tcp"))
+    axes = external_axes.for_core(robot["external_axes"])
+    passes, links = (core.ArmScene(arm, path, one, *frames, axes, context) for one in (near, whole))
     return Scenes(passes, links, whole, near)

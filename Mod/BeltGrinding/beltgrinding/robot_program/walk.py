@@ -89,6 +89,7 @@ class _Walker:
         self.arm = known(robots.arm_of(robot))
         self.axes = robot["external_axes"]
         self.standing = external_axes.at(self.axes, "position")
+        self.moving = external_axes.coordinated(self.axes)
         self.at_zero = robots.frame_at_zero(robot)
         self.tool = robots.robot_frame(robot, "flange_from_tcp")
         self.turning = math.radians(robot_time.limits(job).rotation_speed_deg_s)
@@ -99,7 +100,7 @@ class _Walker:
 
     def run(self) -> Walk:
         moves = self.whole.moves
-        self._add(0, 0.0, _radians(moves[0]), moves[0])
+        self._add(0, 0.0, self._at(moves[0]), moves[0])
         for number, (before, move) in enumerate(zip(moves[:-1], moves[1:]), 1):
             self.context.report(number / len(moves))  # raises Cancelled
             self._follow(number, before, move)
@@ -113,11 +114,11 @@ class _Walker:
         )
 
     def _follow(self, number: int, before: Move, move: Move) -> None:
-        begin, end = _radians(before), _radians(move)
+        begin, end = self._at(before), self._at(move)
         seconds = self._seconds(before, move)
         if move.kind == "LIN" and np.isfinite(begin).all() and np.isfinite(end).all():
             way, whole = self.scenes.passes.straight_way(
-                begin, move.frame, STEP * self.scale, TURN * self.scale
+                begin, move.frame, STEP * self.scale, TURN * self.scale, end
             )
             rows = np.asarray(way)[1:] if whole and len(way) > 1 else end[None]
         else:
@@ -128,6 +129,10 @@ class _Walker:
             share = k / len(rows)
             self._add(number, self.time + share * seconds, row, move, before, share)
         self.time += seconds
+
+    def _at(self, move: Move) -> Floats:
+        """(6 + k,) at a motion's end, NaN where the arm does not get."""
+        return external_axes.coordinates(self.axes, np.degrees(_radians(move)), move.external)
 
     def _seconds(self, before: Move, move: Move) -> float:
         """What a motion takes: of joints, of the tool, of external axes."""
@@ -161,17 +166,18 @@ class _Walker:
         frame, there = move.frame, bool(np.isfinite(q).all())
         if there:
             base = external_axes.base_from_robot(self.axes, values, self.at_zero)
-            frame = base @ self.arm.forward(q) @ self.tool
+            frame = base @ self.arm.forward(q[:6]) @ self.tool
         vector = frames.rotation_vectors(frame[None, :3, :3])[0]
         found = self.found
         found.times.append(round(time, 6))
-        found.joints_deg.append(np.degrees(q).tolist())
+        found.joints_deg.append(np.degrees(q[:6]).tolist())
         found.poses.append([*frame[:3, 3].tolist(), *vector.tolist()])
         found.external.append([float(one) for one in values])
         found.moves.append(number)
         state, distance = FREE, 0.0
         bodies: list[str] = []
-        if there and tuple(values) == self.standing:
+        indexed = [k for k in range(len(values)) if k not in self.moving]
+        if there and all(values[k] == self.standing[k] for k in indexed):
             scene = self.scenes.passes if move.kind == "LIN" else self.scenes.links
             state, bodies, distance = self._look(scene, q)
         found.states.append(state)

@@ -6,6 +6,7 @@ Postures and links are the core's (``ArmScene``); here they are put in a row, an
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -77,12 +78,11 @@ class Planner:
         self.robot = records.plain(job.robot)
         self.arm = known(robots.arm_of(self.robot))
         self.axes = self.robot["external_axes"]
-        self.external = external_axes.at(self.axes, "position")
         self.turning = math.radians(robot_time.limits(job).rotation_speed_deg_s)
         if self.arm.structure == "general":
             name = robots.name(self.robot)
             self.whole.notes.append(facts.no_closed_form(robot=name))
-        self.home = np.radians(self.settings.home_joints_deg)
+        self.home = self._coordinates(self.settings.home_joints_deg)
         self.linker = Linker(self.scenes.links, job.cell, self.settings, context)
         self.given = tool_paths.motions(path)
         self.passes = self._passes()
@@ -98,7 +98,9 @@ class Planner:
     def run(self) -> Whole:
         self._check_place(self.home, "robot.program.home_joints_deg", 0)
         for number, safe in enumerate(self.settings.safe_joints_deg):
-            self._check_place(np.radians(safe), f"robot.program.safe_joints_deg[{number}]", 0)
+            self._check_place(
+                self._coordinates(safe), f"robot.program.safe_joints_deg[{number}]", 0
+            )
         found = self.postures(self.context.part(0.0, 0.6))
         self._set_out()
         poses = found["poses"]
@@ -113,11 +115,17 @@ class Planner:
         self.context.report(1.0)
         return self.whole
 
+    def _coordinates(self, joints_deg: Sequence[float]) -> Floats:
+        """A place of the user's, with coordinated axes at home."""
+        home = external_axes.at(self.axes, "home")
+        return external_axes.coordinates(self.axes, np.array(joints_deg), home)
+
     def _set_out(self) -> None:
-        """From home, where the external axes go one by one to where they stand in the passes."""
+        """From home, where the indexed axes go one by one to where they stand in the passes."""
         stages = external.stages(self.axes)
-        self._at_home(stages[0].begin if stages else self.external, "home")
-        sweep = external.Sweep(self.job, self.scenes.bodies, self.home) if stages else None
+        values = external_axes.values_of(self.axes, self.home)
+        self._at_home(stages[0].begin if stages else values, "home")
+        sweep = external.Sweep(self.job, self.scenes.bodies, self.home[:6]) if stages else None
         for stage in stages:
             name = external_axes.NAME.format(stage.number + 1)
             self._at_home(stage.end, f"{name} to its place")
@@ -137,9 +145,11 @@ class Planner:
     def _at_home(self, values: tuple[float, ...], note: str) -> None:
         base = external_axes.base_from_robot(self.axes, values, robots.frame_at_zero(self.robot))
         frame = (
-            base @ self.arm.forward(self.home) @ robots.robot_frame(self.robot, "flange_from_tcp")
+            base
+            @ self.arm.forward(self.home[:6])
+            @ robots.robot_frame(self.robot, "flange_from_tcp")
         )
-        joints = np.degrees(self.home)
+        joints = np.degrees(self.home[:6])
         self._move(Move("PTP", frame, joints, note=note, external=values), look=False)
 
     def postures(self, context: core.RunContext) -> dict[str, Any]:
@@ -195,11 +205,13 @@ class Planner:
             "singularity": math.radians(self.job.robot.singularity_deg),
             "clearance": self.job.cell.clearance_mm,
             "home": self.home,
+            "axes_spacing": external_axes.spacing(self.axes),
         }
+        free = np.zeros(len(self.home) - 6)  # external axes: no limit but their speeds
         if own.joint_acceleration_deg_s2:
-            options["acceleration"] = np.radians(own.joint_acceleration_deg_s2)
+            options["acceleration"] = np.append(np.radians(own.joint_acceleration_deg_s2), free)
         if own.joint_jerk_deg_s3:
-            options["jerk"] = np.radians(own.joint_jerk_deg_s3)
+            options["jerk"] = np.append(np.radians(own.joint_jerk_deg_s3), free)
         return options
 
     def _frame(self, q: Floats) -> Floats:
@@ -254,7 +266,8 @@ class Planner:
         above = self._above(last) if last["reached"] else None
         if above is not None:
             q, frame = above
-            self._move(Move("LIN", frame, np.degrees(q), feed, line=self._line(last)))
+            line = self._line(last)
+            self._move(Move("LIN", frame, feed=feed, line=line, **self._standing(q)))
 
     def _above(self, pose: Json) -> tuple[Floats, Floats] | None:
         """(joints, frame) off the part above a pose; None: it is clear of everything, or nothing above it is."""
@@ -285,26 +298,31 @@ class Planner:
         for one in found:
             self.least_clearance = min(self.least_clearance, one["clearance"])
             for q in one["joints"][1:]:
-                self._move(Move("PTP", self._frame(q), np.degrees(q), note=note), look=False)
+                frame = self._frame(q)
+                self._move(Move("PTP", frame, note=note, **self._standing(q)), look=False)
                 note = ""
         self.at = to
 
     def _move(self, move: Move, look: bool = True) -> None:
         """Adds a motion; ``look``: it is looked at whether it is free."""
         if move.joints_deg is not None:
-            q = np.radians(move.joints_deg)
+            q = external_axes.coordinates(self.axes, move.joints_deg, move.external)
             if look and move.kind == "LIN":
                 self._look(move, q)
             self.at = q
-        move.external = move.external or self.external
         self.whole.moves.append(move)
 
+    def _standing(self, q: Floats) -> dict[str, Any]:
+        """``joints_deg`` and ``external`` of a Move at coordinates (6 + k,)."""
+        values = external_axes.values_of(self.axes, q)
+        return {"joints_deg": np.degrees(q[:6]), "external": values}
+
     def _look(self, move: Move, q: Floats) -> None:
-        way, gets_there = self.scenes.passes.straight_way(self.at, move.frame, STEP, TURN)
+        way, gets_there = self.scenes.passes.straight_way(self.at, move.frame, STEP, TURN, q)
         if not gets_there or np.abs(way[-1] - q).max() > 1e-6:
             self._tell_broken(move)
             return
-        self._keep_pace(move, way)
+        self._keep_pace(move, way, q)
         met = self._met(self.scenes.passes, way)
         known_of = None if met is None else (*met[:2], self.numbers["passes"])
         if met is not None and known_of not in self.told:  # once a pass
@@ -313,9 +331,9 @@ class Planner:
             fact = facts.meets(program=self.name, body=met[0], other=met[1], place=place)
             self.whole.add_problem("collision", fact, met[:2])
 
-    def _keep_pace(self, move: Move, way: Floats) -> None:
-        """Lowers a motion's feed so far that no joint is too fast anywhere on its ``way``, whose parts are equally long:
-        between two poses a joint may turn mostly in one place."""
+    def _keep_pace(self, move: Move, way: Floats, end: Floats) -> None:
+        """Lowers a motion's feed so far that no joint and no external axis is too fast anywhere on its ``way`` to ``end``,
+        whose parts are equally long: between two poses a joint may turn mostly in one place."""
         before = self.whole.moves[-1].frame
         length = float(np.linalg.norm(move.frame[:3, 3] - before[:3, 3]))
         turn = float(np.linalg.norm(frames.rotation_vectors((before[:3, :3].T @ move.frame[:3, :3])[None])))  # fmt: skip
@@ -325,7 +343,7 @@ class Planner:
         most = self._fastest(way, seconds)
         if most > MAY_BE_FAST:  # near a singularity a joint turns mostly within a part
             finer, _ = self.scenes.passes.straight_way(
-                self.at, move.frame, STEP / FINER, TURN / FINER
+                self.at, move.frame, STEP / FINER, TURN / FINER, end
             )
             most = self._fastest(finer, seconds)
         if most > 1.0 + SLOWER:
@@ -338,15 +356,16 @@ class Planner:
         self.numbers["slower"] += 1
 
     def _fastest(self, way: Floats, seconds: float) -> float:
-        """The greatest speed of a joint on a way of equally long parts, times its limit."""
+        """The greatest speed of a joint or an axis on a way of equally long parts, times its limit."""
         fastest = np.abs(np.diff(way, axis=0)).max(axis=0) * (len(way) - 1) / seconds
-        limited = self.arm.max_speed > 0.0
-        return float((fastest[limited] / self.arm.max_speed[limited]).max(initial=0.0))
+        most = self.scenes.passes.max_speed
+        limited = most > 0.0
+        return float((fastest[limited] / most[limited]).max(initial=0.0))
 
     def _look_at_corners(self) -> None:
         default = max(robot_time.limits(self.job).default_zone_mm, BLEND)
         for move, places in corners.rounded(self.whole.moves, default):
-            way = corners.way(self.scenes.passes, move, places)
+            way = corners.way(self.scenes.passes, self.axes, move, places)
             met = None if way is None else self._met(self.scenes.passes, way)
             if met is not None:
                 place = f"line {move.line}" if move.line else "a pose"
@@ -376,9 +395,14 @@ class Planner:
         if not pose["link"] and 0.0 < before * (1.0 + SLOWER) < pose["duration"]:
             feed *= before / pose["duration"]
             self._count_slower()
-        joints = np.degrees(pose["q"]) if pose["reached"] else None
+        standing = self._standing(pose["q"]) if pose["reached"] else self._lost()
         force, zone = float(self.given["forces"][row]), float(self.given["zones"][row])
-        return Move("LIN", pose["frame"], joints, feed, force, zone, self._line(pose))
+        line = self._line(pose)
+        return Move("LIN", pose["frame"], feed=feed, force=force, zone=zone, line=line, **standing)
+
+    def _lost(self) -> dict[str, Any]:
+        """As ``_standing``, of a pose that the arm does not get to."""
+        return {"joints_deg": None, "external": external_axes.at(self.axes, "position")}
 
     def _tell_cut(self, pose: Json) -> None:
         number, place = self.numbers["passes"], self._place(self._line(pose))

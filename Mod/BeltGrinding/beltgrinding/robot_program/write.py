@@ -11,19 +11,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..base import records
+from ..base import frames, records
 from ..base.kinds import Context, Facts, Floats, Json, known
 from ..cell import reach
 from ..engine import Fact, InputError, core
 from ..job import robot_time
 from ..job.settings import Job
 from ..job.typed import typed
-from ..presets import robot as robots
+from ..presets import external_axes, robot as robots
 from ..programs.force_device import of_job
 from ..programs.program import Motion, Posture, Program
 from ..programs.registry import read_program
 from ..programs.writers.frames import words_of_cell
-from ..programs.writers.sheet import Load
+from ..programs.writers.sheet import WITH_EXTERNAL, Load
 from ..programs.writers.writer import write_program
 from . import whole as wholes
 from .moves import Move, Whole
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from ..programs.writers.frames import Given
 
 CLOSE = 1e-3  # degrees, between the joints that are planned and those that the file reads again
+PARTS = 20  # of a motion with coordinated axes, in which the arm is followed
 WITH_JOINTS = (".src", ".mod", ".modx", ".script")  # languages whose joint motions are read again
 
 
@@ -74,9 +75,9 @@ def program(whole: Whole, job: Job | Json) -> Program:
 
 
 def _frames(robot: Json) -> tuple[Floats, Floats]:
-    return robots.robot_frame(robot, "base_from_robot"), robots.robot_frame(
-        robot, "flange_from_tcp"
-    )
+    """(base_from_robot, flange_from_tcp); the first with the axes that move in the passes at 0, the others as there."""
+    base = robots.base_function(robot)([0.0] * len(robot["external_axes"]))
+    return base, robots.robot_frame(robot, "flange_from_tcp")
 
 
 def _motion(move: Move, arm: core.RobotArm, words: dict[str, str], stops: bool) -> Motion:
@@ -116,17 +117,21 @@ def write(
             problem=whole.problems[0],
             count=len(whole.problems),
         )
-    base_from_robot, flange_from_tcp = _frames(records.plain(job.robot))
+    robot = records.plain(job.robot)
+    if bases is None:  # languages without external axes are refused for that
+        written = file.suffix.lower() in WITH_EXTERNAL
+        bases = _set_base(robot) if written else np.linalg.inv(_frames(robot)[0])
     options: dict[str, Any] = {
         "form": form,
-        "tools": flange_from_tcp if tools is None else tools,
-        "bases": np.linalg.inv(base_from_robot) if bases is None else bases,
+        "tools": _frames(robot)[1] if tools is None else tools,
+        "bases": bases,
         "force_device": of_job(job),
         "pace": robot_time.limits(job).pace,
         "joint_percent": job.robot.program.joint_speed_percent,
         "load": _load(job),
     }
     made = program(whole, job)
+    options["comment"] = _comment(robot)
     if unsafe and whole.problems:
         options["comment"] = "UNSAFE: " + "; ".join(str(fact) for fact in whole.problems)
     file.parent.mkdir(parents=True, exist_ok=True)
@@ -139,6 +144,29 @@ def write(
     return [*notes]
 
 
+def _set_base(robot: Json) -> Floats:
+    """robot_from_base that a program sets. Raises InputError where it goes with a part that moves in the passes."""
+    axes = robot["external_axes"]
+    for k in external_axes.coordinated(axes):
+        if axes[k]["carries"] == external_axes.PART:
+            raise InputError(
+                "robot_program.base_moves",
+                "{key}: {name} carries the part and moves in the passes; only the controller's own base goes with it: couple "
+                "one to the axis there, and give its number or name (program robot --base)",
+                key="robot.external_axes",
+                name=external_axes.NAME.format(k + 1),
+            )
+    found: Floats = np.linalg.inv(_frames(robot)[0])
+    return found
+
+
+def _comment(robot: Json) -> str:
+    """What the head says of axes that move in the passes; "" for none."""
+    moving = external_axes.coordinated(robot["external_axes"])
+    names = ", ".join(external_axes.NAME.format(k + 1) for k in moving)
+    return f"{names} moves in the passes: the base is that with it at 0" if moving else ""
+
+
 def _load(job: Job) -> Load | None:
     load = job.robot.load
     return Load(load.mass_kg, load.centre_mm, load.inertia_kg_m2) if load.mass_kg > 0.0 else None
@@ -149,14 +177,43 @@ def joints_of_file(file: Path, job: Job | Json) -> Floats:
     job = typed(job)
     robot = records.plain(job.robot)
     arrays: dict[str, Any] = read_program(file, force_device=of_job(job)).path_arrays(
-        wholes.STEP, robots.pose_function(robot)
+        wholes.STEP, robots.pose_function(robot), external=True
     )
+    external = arrays.pop("external")
+    if external_axes.coordinated(robot["external_axes"]):
+        return _followed(job, arrays, external)
     arrays.pop("gaps")
     path = core.ToolPath(**arrays, holding=job.cell.holding)
     steps = job.simulation
     found = reach.reach(path, robot, steps.max_travel_mm, steps.max_angle_deg)
     joints: Floats = found["joints"]
     return joints
+
+
+def _followed(job: Job, arrays: dict[str, Any], external: Floats) -> Floats:
+    """As ``joints_of_file``, where coordinated axes move: pose by pose, the tool straight in the frame that goes with the
+    part, the axes evenly."""
+    robot = records.plain(job.robot)
+    arm = known(robots.arm_of(robot))
+    base_of, tool = robots.base_function(robot), robots.robot_frame(robot, "flange_from_tcp")
+    found, at = [], np.clip(np.zeros(6), arm.lower, arm.upper)
+    frame, values = arrays["frames"][0], external[0]
+    for row, joints in enumerate(arrays["joints"]):
+        target, to = arrays["frames"][row], external[row]
+        if np.isfinite(joints).all():
+            at = np.radians(joints)
+        else:
+            for share in np.linspace(0.0, 1.0, PARTS + 1)[1:]:
+                base = base_of(values + share * (to - values))
+                pose = np.linalg.inv(base) @ frames.between(frame, target, share)
+                rows = arm.inverse(pose @ np.linalg.inv(tool), at)
+                near = (
+                    rows[np.argmin(np.abs(rows - at).max(axis=1))] if len(rows) else at * math.nan
+                )
+                at = near
+        found.append(np.degrees(at))
+        frame, values = target, to
+    return np.stack(found)
 
 
 def check_joints(file: Path, job: Job, whole: Whole) -> None:

@@ -141,6 +141,7 @@ def _run(
     ways = motions.of_paths(paths)
     phases.end("programs")
     reached = reach.job_reach(job, paths, context.part(0.0, 0.0))
+    warnings += reach.warnings(job)
     phases.end("reach")
     shape = read_design(job.design, context)
     warnings += shape_warnings(shape)

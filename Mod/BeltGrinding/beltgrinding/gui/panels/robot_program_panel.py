@@ -148,8 +148,11 @@ class RobotProgramPanel(RunPanel):
             unit = "mm" if one.get("kind") == "linear" else "°"
             text = translate("BeltGrinding", "E{}, {}: from {:g} to {:g} {}, limits {:g} and {:g}")
             what = carried.get(one.get("carries", ""), "")
-            ends = one.get("home", 0.0), one.get("position", 0.0)
+            ends: tuple[float, ...] = (one.get("home", 0.0), one.get("position", 0.0))
             limits = one.get("lower", 0.0), one.get("upper", 0.0)
+            if one.get("motion") == "coordinated":
+                text = translate("BeltGrinding", "E{}, {}: moves in the passes, home {:g} {}, limits {:g} and {:g}")  # fmt: skip
+                ends = (one.get("home", 0.0),)
             lines.append(text.format(number_, what, *ends, unit, *limits))
         return "\n".join(lines) or translate("BeltGrinding", "No external axes.")
 

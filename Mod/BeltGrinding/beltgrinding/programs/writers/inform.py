@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from ...base.frames import to_abc
 from ..force_device import INFORM
 from ..patch.text import decimal
-from ..program import ProgramError
+from ..program import Joints, Posture, ProgramError
 from . import pressing
 from .frames import check_all_set, frame_number, undeclared
 from .text import identifier, remarks, rounded
@@ -41,17 +41,22 @@ def text(sheet: Sheet) -> bytes:
             sheet.notes.append(undeclared(frame, name))
             heads += remarks(f"{name} must be: {frame.told}", REMARK)
         numbers[frame.what].append(number)
-    sheet.notes.append(sheet.posture())
+    if any(step.posture is None for step in sheet.steps):
+        sheet.notes.append(sheet.posture())
+    types = _types(sheet)
     frames_of = sheet.frames_of()
     lines = ["/JOB", f"//NAME {identifier(sheet.name, NAME).upper()}", "//POS"]
     lines.append(f"///NPOS {len(sheet.frames)},0,0,0,0,0")
-    before = None
+    before = known_type = None
     for k, pose in enumerate(sheet.frames):
         base, tool = frames_of[k]
         if before != (base, tool):
-            before = base, tool
+            before, known_type = (base, tool), None
             lines += [f"///USER {numbers['base'][base]}", f"///TOOL {numbers['tool'][tool]}"]
-            lines += ["///POSTYPE USER", "///RECTAN", "///RCONF 0,0,0,0,0,0,0,0"]
+            lines += ["///POSTYPE USER", "///RECTAN"]
+        if known_type != types[k]:
+            known_type = types[k]
+            lines.append(f"///RCONF {known_type}")
         at = rounded(pose[:3, 3], sheet.digits.mm).tolist()
         turn = rounded(to_abc(pose), sheet.digits.degree).tolist()[::-1]
         values = [f"{v:.{sheet.digits.mm}f}" for v in at]
@@ -75,3 +80,22 @@ def text(sheet: Sheet) -> bytes:
             speed = decimal(sheet.speed_of(step), sheet.digits.speed, 1)
             lines.append(f"MOVL C{step.pose:05d} V={speed} {level}")
     return "\r\n".join([*lines, "END", ""]).encode("ascii")
+
+
+def _types(sheet: Sheet) -> list[str]:
+    """RCONF of each pose: zeros where the posture is not known."""
+    found = ["0,0,0,0,0,0,0,0"] * len(sheet.frames)
+    for step in sheet.steps:
+        if step.posture is not None and step.joints is not None:
+            found[step.pose] = ",".join(map(str, rconf(step.posture, step.joints))) + ",0,0"
+    return found
+
+
+def rconf(posture: Posture, joints: Joints) -> tuple[int, ...]:
+    """The manipulator type of a position: 1 where the R axis is more than a quarter turn off (no flip), the elbow is below
+    the line from shoulder to wrist (lower arm), the wrist is behind axis S (rear), and the axes R, T and S are turned
+    beyond half a turn."""
+    s, r, t = joints[0], joints[3], joints[5]
+    flip = -90.0 < (r + 180.0) % 360.0 - 180.0 <= 90.0
+    beyond = [int(not -180.0 < one <= 180.0) for one in (r, t, s)]
+    return int(not flip), int(posture.back != posture.behind), int(posture.behind), *beyond

@@ -20,6 +20,7 @@ from ..core.expression import Place, Token
 from .expression import FRAME, Parser, check_target, components_of, frame_of, lacking
 from .numbers import number
 from .settings import FRAMES
+from .types import EXTERNAL
 from .values import Lost, Members, Steps
 
 SPEED = re.compile(
@@ -204,6 +205,7 @@ class Motions(Parts):
         )
         motion = Motion(simple, None, line, self.file, aux=aux)
         motion.tool, motion.base = frames
+        motion.external = _external(target)
         if any(f"a{k}" in target for k in range(1, 7)):
             if simple != "PTP" or kind.endswith("_REL"):
                 raise Unknown("programs.joint_target", "its target is a joint position")
@@ -312,6 +314,17 @@ def _parsed(kind: str, text: str) -> tuple[list[Any], Any, frozenset[str], list[
         targets.append(parser.infix())
         angle = circles.angle_behind(parser)
     return targets, angle, *_behind(parser, kind)
+
+
+def _external(target: Members) -> tuple[float, ...]:
+    """E1, E2 .. of a target, as far as it gives them one after the other."""
+    found: list[float] = []
+    for name in EXTERNAL:
+        value = target.get(name)
+        if value is None or isinstance(value, Lost):
+            break
+        found.append(float(number(value)))
+    return tuple(found)
 
 
 def _behind(parser: Parser, kind: str) -> tuple[frozenset[str], list[Token]]:

@@ -42,6 +42,10 @@ PRESSING = ("fx", "fy", "fz")  # of FCPress1LStart
 KINDS = {"absj": "PTP", "j": "PTP", "l": "LIN", "c": "CIRC", "": "LIN"}
 
 
+ROBTARGET = 4  # components: place, turn, configuration, external axes
+NO_AXIS = 9e9  # of an external axis that is not there
+
+
 class Spec(NamedTuple):
     """How a motion instruction is written, as ``spec_of`` says."""
 
@@ -118,6 +122,7 @@ class MotionRunner(Frames):
                 self.forget_position()
                 motion = Motion(kind, None, line, self.file)
                 motion.joints_deg = joint_angles(targets[0][0])
+                motion.external = _external(targets[0][1])
                 self.add(motion, tool, wobj)
                 return
             programmed = [pose_of(target) for target in targets]
@@ -136,6 +141,8 @@ class MotionRunner(Frames):
             for k, pose in enumerate(poses):
                 motion = Motion(kind, None, line, self.file, speed, aux=k < count - 1)
                 motion.zone_mm, motion.force_N = zone, pressed
+                if len(targets[k]) == ROBTARGET:
+                    motion.external = _external(targets[k][3])
                 self.add(motion, tool, wobj)
                 self.poses.append((motion, pose[0], pose[1]))
             stood, self.here = self.here, ([*programmed[-1], *targets[-1][2:]], tool, wobj)
@@ -295,3 +302,13 @@ class MotionRunner(Frames):
                 name=text.split()[0],
                 reason=getattr(error, "fact", str(error)),
             )
+
+
+def _external(values: Any) -> tuple[float, ...]:
+    """eax_a, eax_b .. of an extjoint, as far as they are there one after the other."""
+    found: list[float] = []
+    for value in values if isinstance(values, list) else []:
+        if not isinstance(value, float) or not abs(value) < NO_AXIS:
+            break
+        found.append(value)
+    return tuple(found)

@@ -411,8 +411,8 @@ def _cell_errors(summary: Json, words: Language) -> Markup | None:
     if told is None:
         return None
     text = words(
-        "The size of the contact's cells leaves heights open by up to {most} mm, mostly at edges; at 95 % of the "
-        "ground area by less than {p95} mm. Whether {share} of it is in tolerance it leaves open.",
+        "The size of the contact's cells leaves heights open by {most} mm at most, mostly at edges; at 95 % of the "
+        "ground area by less than {p95} mm. Whether {share} of it is in tolerance it may leave open.",
         most=words.number(told["max"]),
         p95=words.number(told["p95"]),
         share=words.percent(told["undecided_area_share"]),

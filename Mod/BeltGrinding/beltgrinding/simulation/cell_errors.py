@@ -1,13 +1,12 @@
 """How far a run's heights are off by the size of the contact's cells: an estimate at every sample, in every run.
 
 The engine extrapolates the rate of removal from cells of twice the length at every step (``unresolved``); the sum over
-the run, spread over a cell and with a margin, bounds the error. tests/validation/test_cell_errors.py measures how
+the run, spread to its neighbours and with a margin, bounds the error. tests/validation/test_cell_errors.py measures how
 often it does.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -22,18 +21,15 @@ from .convergence_record import BAND_SHARE
 
 MARGIN = 1.25  # on an extrapolation, by Roache (convergence)
 DEPTH_SHARE = 0.1  # of the depth ground: errors above it are told
-UNDECIDED = 0.05  # of the ground area: more is warned of
-SAMPLES_PER_CELL = 1.5  # that the engine keeps to at least
+RINGS = 1  # of samples round one, the largest of which it takes: signs change from one to the next
+UNDECIDED = 0.2  # of the ground area: more is warned of; the errors are on the safe side
 
 
 def estimate(job: Job, field: core.HeightField, unresolved: Sequence[Floats]) -> None:
     """Gives a ground field its ``height_error`` by ``unresolved``, (n,) mm of each program; of a rigid tool none."""
     if not all(len(one) for one in unresolved):
         return
-    cell = max(job.belt_machine.contact_spacing_mm, SAMPLES_PER_CELL * field.spacing)
-    field.set_height_error(
-        MARGIN * np.abs(np.sum(unresolved, axis=0)), math.ceil(cell / field.spacing)
-    )
+    field.set_height_error(MARGIN * np.abs(np.sum(unresolved, axis=0)), RINGS)
 
 
 def figures(job: Job, field: core.HeightField) -> dict[str, Json]:
@@ -74,7 +70,7 @@ def warn(summary: dict[str, Any], warnings: Facts) -> None:
     warnings.append(
         core.Fact(
             "simulation.coarse_cells",
-            "the size of the contact's cells leaves open whether {share:.1f} % of the ground area is in tolerance, mostly at "
+            "the size of the contact's cells may leave open whether {share:.1f} % of the ground area is in tolerance, mostly at "
             "edges; lower belt_machine.contact_spacing_mm and sampling.spacing_mm, or check the settings",
             share=100.0 * told["undecided_area_share"],
         )

@@ -266,6 +266,7 @@ class _Maker:
         track = {"kind": "linear", "carries": "robot", "axis": [0.0, 1.0, 0.0]}
         limits = {"lower": -500.0, "upper": 500.0, "position": self.dice.uniform(-500, 500)}
         more = {"home": self.dice.uniform(-500, 500), "max_speed": 200.0, "origin_mm": [0.0] * 3}
+        more["motion"] = self.dice.choice(("indexed", "coordinated"))
         return self.dice.choice(([], [{**track, **limits}], [{**track, **limits, **more}]))
 
     def robot_start_joints_deg(self):

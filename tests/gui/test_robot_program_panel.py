@@ -118,7 +118,20 @@ def test_from_home_to_a_written_program(tmp_path):
     name_file(file, "KUKA KRL (*.src)")
     press("Write...")
     assert "Written" in field("state").text(), field("state").text()
-    assert file.read_text().count("PTP {A1") >= 4
+    assert file.read_text().count("PTP {A1") >= 4 and "#BASE," not in file.read_text()
+    field("foldRobot", QtGui.QToolButton).click()
+    settle()
+    type_in("programBase", "5")  # what is planned stays as it is
+    assert json.loads(machine.RobotProgram)["base"] == "5" and not program.OutOfDate
+    press("Write...")
+    text = file.read_text()
+    assert "#BASE,5" in text
+    type_in("programBase", "a table")
+    press("Write...")
+    assert "'a table' is no base of a controller" in field("state").text()
+    assert file.read_text() == text
+    type_in("programBase", "")
+    assert "base" not in json.loads(machine.RobotProgram)
     press("Close")
     doc.undo()
     assert doc.getObject("RobotProgram") is not None and not doc.RobotProgram.Fingerprint

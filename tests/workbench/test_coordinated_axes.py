@@ -12,6 +12,7 @@ from test_robot_program import KUKA, chain, forward
 
 from beltgrinding.base import frames
 from beltgrinding.cell import reach, tool_path
+from beltgrinding.cli import ground_files
 from beltgrinding.engine import InputError, core
 from beltgrinding.job import poses, workpiece
 from beltgrinding.job.typed import typed
@@ -193,6 +194,29 @@ def test_it_reads_again_with_its_axes(name, turned, tmp_path):
     file.write_text(text.replace(value, other))
     with pytest.raises(InputError, match="other joint angles than planned"):
         writing.check_joints(file, typed(job), whole)
+
+
+def test_the_job_names_the_base_for_every_writer(turned, tmp_path):
+    job, whole = turned
+    for given in (np.eye(4), "as-known", {"table": "as-known"}):  # numbers do not go with the table
+        with pytest.raises(InputError, match="only the controller's own base"):
+            writing.write(tmp_path / "whole.src", job, whole, bases=given)
+    with pytest.raises(InputError, match="only the controller's own base"):
+        ground_files.check_name("whole.src", "", job)
+    program = {"home_joints_deg": HOME, "base": "5"}
+    named = {**job, "robot": {**job["robot"], "program": {**job["robot"]["program"], **program}}}
+    ground_files.check_name("whole.src", "", named)
+    with pytest.raises(InputError, match="external axes are written as .src"):
+        ground_files.check_name("whole.ls", "", named)
+    file = tmp_path / "whole.src"
+    writing.write(file, named, whole)
+    assert "BAS (#BASE,5 )" in file.read_text()
+    writing.write(file, named, whole, bases="7")
+    assert "BAS (#BASE,7 )" in file.read_text() and "#BASE,5" not in file.read_text()
+    with pytest.raises(
+        InputError, match="robot.program.base: 'a table' is no base of a controller"
+    ):
+        robots.checked({**ROBOT, "program": {"base": "a table"}})
 
 
 def test_the_arm_walks_with_the_table(turned):

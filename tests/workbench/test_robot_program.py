@@ -290,7 +290,7 @@ class Said:
     print_written = print_warnings
 
 
-def test_grind_puts_it_in_place_of_the_passes_or_leaves_none(laid, tmp_path):
+def test_grind_puts_it_in_place_of_the_passes_or_leaves_those(laid, tmp_path):
     file, said = tmp_path / "raster.src", Said()
     file.write_text("the passes alone")
     job = cell(laid=laid)
@@ -301,9 +301,12 @@ def test_grind_puts_it_in_place_of_the_passes_or_leaves_none(laid, tmp_path):
     wanted = np.stack([move.joints_deg for move in writing.plan_job(job).moves])
     assert np.abs(writing.joints_of_file(file, job) - wanted).max() < 1e-3
     block = {"name": "block", "frame": "part", "brep": brep([45, 0, 20], [55, 60, 120])}
-    with pytest.raises(InputError, match="raster.src is not written: .*block"):
+    file.write_text("the passes alone")
+    with pytest.raises(
+        InputError, match="raster.src has the passes alone.* is not written: .*block"
+    ):
         command.in_place_of(file, cell(laid=laid, bodies=[block]), said)
-    assert not file.exists()
+    assert file.read_text() == "the passes alone"
     assert any("block" in str(fact) for fact in said.warnings)
 
 

@@ -101,8 +101,8 @@ def _faces(text):
 
 
 def check_name(name, form, job=None):
-    """Refuses the name of a program that cannot be written, before anything is planned, and a job's force device that
-    cannot set its force there. Raises InputError."""
+    """Refuses the name of a program that cannot be written, before anything is planned, and a job's force device, external
+    axes or base that cannot be set there. Raises InputError."""
     import tempfile
 
     import numpy as np
@@ -117,6 +117,7 @@ def check_name(name, form, job=None):
     device = None
     if job is not None:
         device, passes[0]["force_N"] = of_job(job), job["belt_machine"]["force_N"]
+        robot_program.check(name, job)
     with tempfile.TemporaryDirectory() as folder:
         write_program(Path(folder, name), None, passes, form=form, force_device=device)
 

@@ -42,6 +42,8 @@ def write(arguments, files):
     job = jobs.load(files[0])
     outputs.check(arguments, [arguments.output], [files[0], *inputs.files(job)])
     given = {"form": arguments.form, **frames_options.given(arguments)}
+    if wanted(job):
+        writing.base_set(arguments.output, job, given["bases"])
     whole, notes = _planned(arguments.output, job, arguments, **given)
     arguments.messages.print_written(notes)
     figures.tell(arguments, writing.summary(whole), indent=2)
@@ -69,14 +71,26 @@ def wanted(job):
 
 def in_place_of(file, job, arguments):
     """Writes the program for the whole robot over that of the passes alone, and returns what the writer tells. Where it
-    is refused the other goes, too: it has the same collisions. Raises InputError."""
+    is refused the other stays, which the error says. Raises InputError."""
     from ..engine import InputError
 
     try:
         return _planned(file, job, arguments, form=arguments.form)[1]
-    except InputError:
-        file.unlink()
-        raise
+    except InputError as error:
+        raise error.within(
+            "cli.passes_alone",
+            "{program} has the passes alone, not the way from home to home: ",
+            program=file,
+        ) from None
+
+
+def check(name, job):
+    """Refuses, before anything is planned, a program for the whole robot whose external axes or base cannot be written.
+    Raises InputError."""
+    from ..robot_program import write as writing
+
+    if wanted(job):
+        writing.base_set(name, job)
 
 
 def beside(folder, names, job, arguments):

@@ -407,6 +407,7 @@ class RobotProgram:
     """``robot.program`` of a job."""
 
     home_joints_deg: tuple[float, ...]
+    base: str
     safe_joints_deg: tuple[tuple[float, float, float, float, float, float], ...]
     order: Literal["program", "least_way"]
     roll_deg: float

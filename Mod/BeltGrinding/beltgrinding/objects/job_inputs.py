@@ -93,6 +93,7 @@ def fingerprint(job: DocumentObject) -> str:
     data = without_geometry(job)
     data["belt_machine"].pop("belt", None)
     data["robot"].pop("controller", None)  # plans keep to it, and give the job its numbers
+    data["robot"].get("program", {}).pop("base", None)  # only the written program has it
     del data["inspection"]
     stock = required(job, Stock, "stock")
     data["stock"] = stock.Proxy.settings(stock)

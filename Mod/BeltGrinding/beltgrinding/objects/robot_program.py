@@ -153,19 +153,22 @@ def make_robot_program(
 
 
 def write_robot_program(obj: DocumentObject, file: Path | str, unsafe: bool = False) -> Facts:
-    """Writes what was planned as a robot program in the language of the file's suffix. Tool and base are the first path's
-    ``ProgramTool`` and ``ProgramBase``, else the numbers of the job's robot. ``unsafe``: in spite of its problems.
+    """Writes what was planned as a robot program in the language of the file's suffix. The base is that of the belt
+    machine's ``RobotProgram``, else the first path's ``ProgramBase``, the tool that one's ``ProgramTool``; without these,
+    the numbers of the job's robot. ``unsafe``: in spite of its problems.
     Returns what ``write_program`` does. Raises InputError."""
     check(obj, unsafe)
     whole, job = Whole.from_data(json.loads(obj.RobotMoves)), obj.getParentGroup()
     first = ground_by.required(job)[0]
     with job_inputs.scratch_folder() as folder:
+        data = job_inputs.to_data(job, folder)
+        own = data["robot"]["program"]["base"]
         return writing.write(
             file,
-            job_inputs.to_data(job, folder),
+            data,
             whole,
             tools=first.ProgramTool.strip() or None,
-            bases=first.ProgramBase.strip() or None,
+            bases=None if own else first.ProgramBase.strip() or None,
             unsafe=unsafe,
         )
 

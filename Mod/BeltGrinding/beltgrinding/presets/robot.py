@@ -5,6 +5,7 @@ Joint angles are in degrees; frames are 4 x 4 in mm.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from ..engine import core
 
 BASE = "base_from_robot"
+CONTROLLERS_OWN = re.compile(r"\w*", re.ASCII)  # numbers and names of a controller's own frames
 
 
 def checked(robot: Json) -> dict[str, Any]:
@@ -62,6 +64,13 @@ def validate(robot: Json) -> None:
                 key=f"robot.program.{name}",
                 count=len(robot["program"][name]),
             )
+    if not CONTROLLERS_OWN.fullmatch(robot["program"]["base"]):
+        raise InputError(
+            "presets.program_base",
+            "{key}: '{base}' is no base of a controller; give its number or its name, as 5 or wTable",
+            key="robot.program.base",
+            base=robot["program"]["base"],
+        )
     if len(robot["link_radii_mm"]) not in (0, len(LINKS)):
         raise InputError(
             "presets.link_radii",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,8 +22,8 @@ from ..presets import external_axes, robot as robots
 from ..programs.force_device import of_job
 from ..programs.program import Motion, Posture, Program
 from ..programs.registry import read_program
-from ..programs.writers.frames import words_of_cell
-from ..programs.writers.sheet import WITH_EXTERNAL, Load
+from ..programs.writers.frames import AS_KNOWN, words_of_cell
+from ..programs.writers.sheet import Load, check_external
 from ..programs.writers.writer import write_program
 from . import whole as wholes
 from .moves import Move, Whole
@@ -106,7 +106,7 @@ def write(
     unsafe: bool = False,
 ) -> Facts:
     """Writes a ``Whole`` of a validated job as a robot program. Returns what ``write_program`` does. ``tools``, ``bases``:
-    as that takes them; None: the numbers of the job's robot. Raises InputError, ``unsafe`` or not where the file would
+    as that takes them; None: the base of ``robot.program``, else the numbers of the job's robot. Raises InputError, ``unsafe`` or not where the file would
     not read again as planned; else for a problem of the program, the first named."""
     file, job = Path(file), typed(job)
     if whole.problems and not unsafe:
@@ -118,13 +118,10 @@ def write(
             count=len(whole.problems),
         )
     robot = records.plain(job.robot)
-    if bases is None:  # languages without external axes are refused for that
-        written = file.suffix.lower() in WITH_EXTERNAL
-        bases = _set_base(robot) if written else np.linalg.inv(_frames(robot)[0])
     options: dict[str, Any] = {
         "form": form,
         "tools": _frames(robot)[1] if tools is None else tools,
-        "bases": bases,
+        "bases": base_set(file, job, bases),
         "force_device": of_job(job),
         "pace": robot_time.limits(job).pace,
         "joint_percent": job.robot.program.joint_speed_percent,
@@ -144,20 +141,30 @@ def write(
     return [*notes]
 
 
-def _set_base(robot: Json) -> Floats:
-    """robot_from_base that a program sets. Raises InputError where it goes with a part that moves in the passes."""
+def base_set(file: Path | str, job: Job | Json, given: Given | None = None) -> Given:
+    """What a program of that name sets as its base: ``given`` if it is not None, else the base of ``robot.program``, else
+    robot_from_base. Raises InputError for external axes that the language does not write, and for numbers where the part
+    moves in the passes."""
+    job = typed(job)
+    robot = records.plain(job.robot)
     axes = robot["external_axes"]
+    if axes:
+        check_external(Path(file).suffix.lower())
+    if given is None:
+        given = job.robot.program.base or np.linalg.inv(_frames(robot)[0])
+    each = given.values() if isinstance(given, Mapping) else [given]
+    if all(isinstance(one, (str, int)) and one != AS_KNOWN for one in each):
+        return given
     for k in external_axes.coordinated(axes):
         if axes[k]["carries"] == external_axes.PART:
             raise InputError(
                 "robot_program.base_moves",
                 "{key}: {name} carries the part and moves in the passes; only the controller's own base goes with it: couple "
-                "one to the axis there, and give its number or name (program robot --base)",
+                "one to the axis there, and give its number or name (robot.program.base, or program robot --base)",
                 key="robot.external_axes",
                 name=external_axes.NAME.format(k + 1),
             )
-    found: Floats = np.linalg.inv(_frames(robot)[0])
-    return found
+    return given
 
 
 def _comment(robot: Json) -> str:

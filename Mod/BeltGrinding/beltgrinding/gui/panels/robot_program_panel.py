@@ -131,6 +131,20 @@ class RobotProgramPanel(RunPanel):
             )
         )
         rows.addWidget(take)
+        named = QtGui.QFormLayout()
+        self.base = QtGui.QLineEdit(self._program().get("base", ""))
+        self.base.setObjectName("programBase")
+        self.base.setPlaceholderText(translate("BeltGrinding", "numbers of the job"))
+        self.base.setToolTip(
+            translate(
+                "BeltGrinding",
+                "The controller's own base that the program sets: its number (KRL) or name (RAPID). A part that moves in the "
+                "passes needs one, coupled to its axis.",
+            )
+        )
+        self.base.textChanged.connect(lambda _: self._set_base())
+        named.addRow(translate("BeltGrinding", "Controller's base"), self.base)
+        rows.addLayout(named)
         self.axes = QtGui.QLabel(self._axes_text())
         self.axes.setObjectName("externalAxes")
         self.axes.setWordWrap(True)
@@ -191,9 +205,18 @@ class RobotProgramPanel(RunPanel):
             self.home.setStyleSheet(WRONG)
             return
         self.home.setStyleSheet("")
-        program = json.dumps({**self._program(), "home_joints_deg": angles}, allow_nan=False)
-        if json.loads(program) != self._program():
-            self.machine.RobotProgram = program
+        self._set_program({**self._program(), "home_joints_deg": angles})
+
+    def _set_base(self) -> None:
+        base, rest = self.base.text().strip(), self._program()
+        rest.pop("base", None)
+        fit = robots.CONTROLLERS_OWN.fullmatch(base) is not None
+        self.base.setStyleSheet("" if fit else WRONG)
+        self._set_program({**rest, "base": base} if base else rest)  # writing refuses what is wrong
+
+    def _set_program(self, program: dict[str, Any]) -> None:
+        if program != self._program():
+            self.machine.RobotProgram = json.dumps(program, allow_nan=False)
             self._changed()
 
     def take_home(self) -> None:

@@ -17,6 +17,17 @@ from .text import DIGITS, Digits
 WITH_EXTERNAL = (".src", ".mod", ".modx")  # languages that have external axes here
 
 
+def check_external(suffix: str) -> None:
+    """Raises ProgramError for a language whose statement for external axes no public source shows."""
+    if suffix not in WITH_EXTERNAL:
+        raise ProgramError(
+            "programs.writers.external",
+            "external axes are written as {known} only, not as '{suffix}'",
+            known=", ".join(WITH_EXTERNAL),
+            suffix=suffix,
+        )
+
+
 @dataclass
 class Step:
     """A motion to be written. ``aux``: number of the auxiliary pose, None: no arc."""
@@ -101,13 +112,8 @@ class Sheet:
 
     def refuse_external(self, suffix: str) -> None:
         """Raises ProgramError for external axes in a language whose statement for them no public source shows."""
-        if suffix not in WITH_EXTERNAL and any(step.external for step in self.steps):
-            raise ProgramError(
-                "programs.writers.external",
-                "external axes are written as {known} only, not as '{suffix}'",
-                known=", ".join(WITH_EXTERNAL),
-                suffix=suffix,
-            )
+        if any(step.external for step in self.steps):
+            check_external(suffix)
 
     def posture(self) -> Fact:
         """What a language takes for granted that writes the arm's configuration with each pose."""

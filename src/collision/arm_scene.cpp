@@ -75,8 +75,9 @@ ArmScene::ArmScene(ArmInCell cell, ExternalAxes axes, const CellFrames& frames,
         upper_[row] = axes_[k].upper;
         max_speed_[row] = axes_[k].max_speed;
     }
-    for (const auto& [a, b] : pairs_looked_at(&cell_.arm, frames_.holding, bodies_, meshes_))
-        add_pair(a, b);
+    LookedAt looked_at = pairs_looked_at(&cell_, frames_, bodies_, meshes_);
+    for (const auto& [a, b] : looked_at.pairs) add_pair(a, b);
+    touching_ = std::move(looked_at.touching);
     add_pairs_of_axes();
 }
 
@@ -139,7 +140,8 @@ Frame ArmScene::robot_from_flange(const Frame& base_from_tcp, const Coordinates&
 }
 
 double ArmScene::clearance_of(const Pair& pair, double asked) const {
-    return beltgrinding::clearance_of(bodies_[pair.first], bodies_[pair.second], asked);
+    return beltgrinding::clearance_of(bodies_[pair.first], bodies_[pair.second], frames_.holding,
+                                      asked);
 }
 
 bool ArmScene::near(const Pair& pair, const Placed& placed, double distance) const {

@@ -133,8 +133,10 @@ CollisionResult check_collisions(const ToolPath& path, const std::vector<Collisi
     if (arm != nullptr && !arm->way.empty()) arm_travel.emplace(path, *arm);
     std::vector<std::pair<std::size_t, std::size_t>> numbers;
     std::vector<std::unique_ptr<CollisionPair>> pairs;
-    const RobotArm* looked_at = arm_travel ? &arm->arm : nullptr;
-    for (const auto& [a, b] : pairs_looked_at(looked_at, path.frames().holding, bodies, meshes)) {
+    const LookedAt looked_at =
+        pairs_looked_at(arm_travel ? arm : nullptr, path.frames(), bodies, meshes);
+    result.touching = looked_at.touching;
+    for (const auto& [a, b] : looked_at.pairs) {
         const CollisionBody &first = bodies[a], &second = bodies[b];
         std::unique_ptr<const PairMotion> motion;
         if (second.carrier != Carrier::kLink) {
@@ -148,8 +150,9 @@ CollisionResult check_collisions(const ToolPath& path, const std::vector<Collisi
         } else {
             continue;  // nowhere in reach
         }
-        const CollisionOptions own{clearance_of(first, second, options.clearance),
-                                   options.resolution};
+        const CollisionOptions own{
+            clearance_of(first, second, path.frames().holding, options.clearance),
+            options.resolution};
         pairs.push_back(std::make_unique<CollisionPair>(std::move(motion), meshes[a], meshes[b],
                                                         first.margin + second.margin, own));
         numbers.emplace_back(a, b);

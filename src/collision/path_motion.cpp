@@ -10,7 +10,7 @@ namespace {
 // motions; by less than this factor for turns below half a turn.
 constexpr double kCornerTurn = 1.5;
 
-constexpr std::size_t kAtFlange = 5;  // links from here on hold what is at the flange
+constexpr std::size_t kAtFlange = 6;  // the link that goes with what is at the flange
 constexpr std::size_t kBlock = 64;    // motions that are followed by themselves
 
 /// Where a place lies on the path: in the motion to a pose.

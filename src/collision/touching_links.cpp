@@ -11,6 +11,7 @@ namespace {
 
 using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
 
+constexpr std::size_t kWrist = 5;
 constexpr std::size_t kPostures = 200;
 constexpr std::size_t kMost = kPostures / 4;  // in which bodies that are not too rough may touch
 
@@ -37,15 +38,25 @@ std::vector<Joints> postures(const RobotArm& arm) {
     return all;
 }
 
-bool touch(const CollisionMesh& first, const CollisionMesh& second,
-           const Frame& first_from_second) {
-    return first.within(second, first_from_second, kLinksApart) ||
+bool touch(const CollisionMesh& first, const CollisionMesh& second, const Frame& first_from_second,
+           double margin = 0.0) {
+    return first.within(second, first_from_second, kLinksApart + margin) ||
            first.surrounds(second, first_from_second) ||
            second.surrounds(first, first_from_second.inverse());
 }
 
 bool both_links(const CollisionBody& first, const CollisionBody& second) {
     return first.carrier == Carrier::kLink && second.carrier == Carrier::kLink;
+}
+
+/// Of what the robot carries and the link before the flange, which joint 6 moves against it.
+bool at_wrist(const CollisionBody& first, const CollisionBody& second, Holding holding) {
+    return carried(first.carrier, holding) && second.carrier == Carrier::kLink &&
+           second.link == kWrist;
+}
+
+bool among(const Pairs& pairs, std::size_t first, std::size_t second) {
+    return std::find(pairs.begin(), pairs.end(), std::pair(first, second)) != pairs.end();
 }
 
 /// Whether limits keep two links apart: they are next but one to each other, and a joint between
@@ -111,25 +122,48 @@ std::vector<CollisionMesh> prepared(const std::vector<CollisionBody>& bodies, bo
     return meshes;
 }
 
-Pairs pairs_looked_at(const RobotArm* arm, Holding holding,
-                      const std::vector<CollisionBody>& bodies,
-                      const std::vector<CollisionMesh>& meshes) {
-    const Pairs left_out = arm != nullptr ? touching_links(*arm, bodies, meshes) : Pairs();
-    Pairs found;
+BodyPairs touching_wrist(const ArmInCell& arm, const CellFrames& cell,
+                         const std::vector<CollisionBody>& bodies,
+                         const std::vector<CollisionMesh>& meshes) {
+    const Frame wrist_from_tcp =
+        arm.arm.links(arm.home)[kWrist].inverse() * arm.arm.forward(arm.home) * arm.flange_from_tcp;
+    BodyPairs found;
     for (std::size_t a = 0; a < bodies.size(); ++a) {
+        const Frame wrist_from_body = wrist_from_tcp * holder_from(bodies[a].carrier, cell);
         for (std::size_t b = 0; b < bodies.size(); ++b) {
-            const std::pair<std::size_t, std::size_t> pair(a, b);
-            if (meets(bodies[a], bodies[b], holding) &&
-                (arm == nullptr || looked_at(*arm, bodies[a], bodies[b])) &&
-                std::find(left_out.begin(), left_out.end(), pair) == left_out.end())
-                found.push_back(pair);
+            if (at_wrist(bodies[a], bodies[b], cell.holding) &&
+                touch(meshes[a], meshes[b], wrist_from_body.inverse(),
+                      bodies[a].margin + bodies[b].margin))
+                found.emplace_back(a, b);
         }
     }
     return found;
 }
 
-double clearance_of(const CollisionBody& first, const CollisionBody& second, double asked) {
-    return both_links(first, second) ? std::min(asked, kLinksApart) : asked;
+LookedAt pairs_looked_at(const ArmInCell* arm, const CellFrames& cell,
+                         const std::vector<CollisionBody>& bodies,
+                         const std::vector<CollisionMesh>& meshes) {
+    LookedAt found;
+    Pairs rough;
+    if (arm != nullptr) {
+        rough = touching_links(arm->arm, bodies, meshes);
+        found.touching = touching_wrist(*arm, cell, bodies, meshes);
+    }
+    for (std::size_t a = 0; a < bodies.size(); ++a) {
+        for (std::size_t b = 0; b < bodies.size(); ++b) {
+            if (meets(bodies[a], bodies[b], cell.holding) &&
+                (arm == nullptr || looked_at(arm->arm, bodies[a], bodies[b])) &&
+                !among(rough, a, b) && !among(found.touching, a, b))
+                found.pairs.emplace_back(a, b);
+        }
+    }
+    return found;
+}
+
+double clearance_of(const CollisionBody& first, const CollisionBody& second, Holding holding,
+                    double asked) {
+    const bool rough = both_links(first, second) || at_wrist(first, second, holding);
+    return rough ? std::min(asked, kLinksApart) : asked;
 }
 
 }  // namespace beltgrinding

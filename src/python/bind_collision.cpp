@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 
 #include "bodies.h"
 #include "collision/standing.h"
@@ -46,13 +47,20 @@ struct CollisionFindings {
 };
 
 CollisionFindings find(const ToolPath& path, const py::list& given, double clearance,
-                       double resolution, const ArmInCell* arm, const RunContext* context) {
+                       double resolution, const ArmInCell* arm, const RunContext* context,
+                       const Joints& home) {
     const std::vector<CollisionBody> bodies = bodies_from(given);
+    std::optional<ArmInCell> at_home;
+    if (arm != nullptr) {
+        at_home = *arm;
+        at_home->home = home;
+    }
     CollisionFindings found;
     for (const CollisionBody& body : bodies) found.names.push_back(body.name);
     const py::gil_scoped_release release;
     found.result = check_collisions(path, bodies, {clearance, resolution},
-                                    context != nullptr ? *context : RunContext(), arm);
+                                    context != nullptr ? *context : RunContext(),
+                                    at_home ? &*at_home : nullptr);
     return found;
 }
 
@@ -77,12 +85,15 @@ py::dict told(const CollisionFindings& found, const ToolPath& path, const ArmInC
     py::dict all;
     all["events"] = events_to_list(result.events);
     all["pairs"] = pairs;
+    py::list touching;
+    for (const auto& pair : result.touching) touching.append(found.names[pair.first]);
+    all["touching"] = touching;
     return all;
 }
 
 py::dict collisions(const ToolPath& path, const py::list& given, double clearance,
                     double resolution, const ArmInCell* arm, const RunContext* context) {
-    return told(find(path, given, clearance, resolution, arm, context), path, arm);
+    return told(find(path, given, clearance, resolution, arm, context, Joints::Zero()), path, arm);
 }
 
 py::array_t<std::int32_t> standing(const std::vector<CollisionMesh>& held,
@@ -112,7 +123,7 @@ void bind_collision(py::module_& m) {
         "frame (base, tool, wheel, part, or link with its number link), mesh (TriangleMesh in that "
         "frame, mm), margin (mm). arm: what RobotArm.reach gave as arm, for links. "
         "dict(events; pairs: dicts of bodies, distance mm, pose, time s, points in the work "
-        "frame).");
+        "frame; touching: names of bodies at the flange that are not looked at against link 5).");
     py::class_<CollisionFindings>(m, "CollisionFindings",
                                   "What check_collisions found along a way, at whatever feeds.")
         .def("__len__",
@@ -126,7 +137,9 @@ void bind_collision(py::module_& m) {
     m.def("find_collisions", &find, py::arg("path"), py::arg("bodies"),
           py::arg("clearance") = CollisionOptions().clearance,
           py::arg("resolution") = CollisionOptions().resolution, py::arg("arm") = nullptr,
-          py::arg("context") = nullptr, "check_collisions, as CollisionFindings.");
+          py::arg("context") = nullptr, py::arg("home") = Joints(Joints::Zero()),
+          "check_collisions, as CollisionFindings. home: (6,) rad, where bodies at the flange that "
+          "touch link 5 do so as they are built.");
     m.def(
         "touching_links",
         [](const RobotArm& arm, const py::list& given) {

@@ -176,9 +176,9 @@ void bind_posture(py::module_& m) {
             py::init([](const RobotArm& arm, const ToolPath& path, const py::list& bodies,
                         const Eigen::Matrix4d& base_from_robot,
                         const Eigen::Matrix4d& flange_from_tcp, const py::list& external_axes,
-                        const RunContext* context) {
+                        const Joints& home, const RunContext* context) {
                 const Frame base = frame_from(base_from_robot, "base_from_robot");
-                ArmInCell cell{arm, base, frame_from(flange_from_tcp, "flange_from_tcp")};
+                ArmInCell cell{arm, base, frame_from(flange_from_tcp, "flange_from_tcp"), {}, home};
                 ExternalAxes axes = axes_from(external_axes, base);
                 std::vector<CollisionBody> given = bodies_from(bodies);
                 const py::gil_scoped_release release;
@@ -187,11 +187,21 @@ void bind_posture(py::module_& m) {
             }),
             py::arg("arm"), py::arg("path"), py::arg("bodies"), py::arg("base_from_robot"),
             py::arg("flange_from_tcp"), py::arg("external_axes") = py::list(),
-            py::arg("context") = nullptr,
+            py::arg("home") = Joints(Joints::Zero()), py::arg("context") = nullptr,
             "bodies: as check_collisions takes them; of path only the cell's frames count. "
             "external_axes: dicts of linear, carries_part, coordinated, point (mm), axis, lower, "
             "upper, position, max_speed (rad, or m); base_from_robot is then with all at 0. With k "
-            "coordinated axes joints q have 6 + k rows, rad and m.")
+            "coordinated axes joints q have 6 + k rows, rad and m. home: (6,) rad, where bodies at "
+            "the flange that touch link 5 do so as they are built.")
+        .def_property_readonly(
+            "touching",
+            [](const ArmScene& scene) {
+                std::vector<std::string> names;
+                for (const auto& pair : scene.touching())
+                    names.push_back(scene.bodies()[pair.first].name);
+                return names;
+            },
+            "names of bodies at the flange that are not looked at against link 5")
         .def_property_readonly(
             "max_speed", [](const ArmScene& scene) { return Eigen::VectorXd(scene.max_speed()); },
             "(6 + k,) rad/s and m/s; 0: not known")

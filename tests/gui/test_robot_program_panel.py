@@ -133,6 +133,8 @@ def test_from_home_to_a_written_program(tmp_path):
     type_in("programBase", "")
     assert "base" not in json.loads(machine.RobotProgram)
     press("Close")
+    doc.undo()  # of the base
+    assert doc.RobotProgram.Fingerprint
     doc.undo()
     assert doc.getObject("RobotProgram") is not None and not doc.RobotProgram.Fingerprint
     doc.redo()

@@ -118,7 +118,7 @@ TEST(ArmCollision, LeastDistancesAreThoseOfAFineSearch) {
         for (std::size_t link = 0; link <= 6; ++link) {
             const CollisionMesh link_mesh(bodies[link].mesh);
             for (const std::size_t other : {std::size_t{7}, std::size_t{8}}) {
-                const bool expected = other == 7 ? link > 0 : link < 5;
+                const bool expected = other == 7 ? link > 0 : link < 6;
                 ASSERT_EQ(least.count({other, link}), expected ? 1u : 0u) << other << ' ' << link;
                 if (!expected) continue;
                 const CollisionMesh mesh(bodies[other].mesh);
@@ -134,7 +134,8 @@ TEST(ArmCollision, LeastDistancesAreThoseOfAFineSearch) {
                 ++compared;
             }
         }
-        EXPECT_EQ(compared, 11u);
+        EXPECT_EQ(compared, 12u);
+        EXPECT_TRUE(found.touching.empty());
         EXPECT_EQ(least.count({7, 8}), 1u);  // as without an arm
     }
 }
@@ -207,8 +208,10 @@ TEST(ArmCollision, LimitsKeepLinksApartThatAreNextButOne) {
     const auto pairs = [](const RobotArm& of) {
         std::vector<CollisionBody> bodies = links(of);
         bodies[2].mesh = box(of.point(1), {5, 5, 5});
-        const auto found =
-            pairs_looked_at(&of, Holding::kPartInHand, bodies, prepared(bodies, true));
+        const ArmInCell in_cell{of};
+        CellFrames cell;
+        cell.holding = Holding::kPartInHand;
+        const auto found = pairs_looked_at(&in_cell, cell, bodies, prepared(bodies, true)).pairs;
         return std::set<std::pair<std::size_t, std::size_t>>(found.begin(), found.end());
     };
     RobotModel model = arm().model();
@@ -255,6 +258,47 @@ TEST(ArmCollision, ASceneSeesAnArmFoldedIntoItselfAndItsWayThere) {
     beyond[2] = 2.6;
     ASSERT_FALSE(scene.within(beyond, 0.0));
     EXPECT_TRUE(scene.on_way(open, beyond, 0.0, 0.05));
+}
+
+TEST(ArmCollision, OfTheFlangeWhatTouchesTheWristAtHomeBelongsToIt) {
+    // Link 5 reaches 60 mm along y beside its axis; a bracket at the flange lies there at q6 = 0.
+    using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
+    const RobotArm one = arm();
+    const Vec3 wrist = one.point(4);
+    std::vector<CollisionBody> bodies;
+    bodies.push_back({"link 5", Carrier::kLink, box(wrist + Vec3(0, 30, 0), {20, 30, 20}), 0.0, 5});
+    bodies.push_back({"link 6", Carrier::kLink, box(wrist + Vec3(80, 0, 0), {20, 20, 20}), 0.0, 6});
+    bodies.push_back({"bracket", Carrier::kTool, box({-80, 40, 0}, {30, 5, 5})});
+    bodies.push_back({"plate", Carrier::kTool, box({30, 0, 0}, {10, 60, 60})});
+    Joints aside = Joints::Zero();
+    aside[5] = M_PI / 2;
+    ArmInCell in_cell{one};
+    in_cell.way = {{aside, 0.0, 0, false}, {Joints::Zero(), 2.0, 1, true}};
+    const ToolPath path({pose(one.forward(aside)), pose(one.forward(Joints::Zero()))}, {});
+    const auto at_zero = check_collisions(path, bodies, {}, {}, &in_cell);
+    EXPECT_EQ(at_zero.touching, (Pairs{{2, 0}}));
+    EXPECT_TRUE(at_zero.events.empty());
+    ASSERT_EQ(at_zero.pairs.size(), 1u);  // plate and link 5; none with link 6
+    EXPECT_EQ(at_zero.pairs[0].first, 3u);
+    EXPECT_EQ(at_zero.pairs[0].second, 0u);
+    // At another home it stands aside, and its way to link 5 is a collision.
+    in_cell.home = aside;
+    const auto elsewhere = check_collisions(path, bodies, {}, {}, &in_cell);
+    EXPECT_TRUE(elsewhere.touching.empty());
+    ASSERT_EQ(elsewhere.events.size(), 1u);
+    EXPECT_EQ(elsewhere.events[0].kind, "collision");
+    EXPECT_EQ(elsewhere.events[0].bodies, (std::vector<std::string>{"bracket", "link 5"}));
+    EXPECT_GT(elsewhere.events[0].time, 1.0);  // near q6 = 0
+    // A scene says the same: along joint 6 no other joint decides.
+    ArmScene scene(in_cell, {}, bodies);
+    EXPECT_TRUE(scene.touching().empty());
+    EXPECT_FALSE(scene.within(aside, 5.0));
+    EXPECT_TRUE(scene.within(Joints::Zero(), 0.0));
+    EXPECT_TRUE(scene.on_way(aside, -aside, 0.5, 0.05));
+    in_cell.home = Joints::Zero();
+    const ArmScene built(in_cell, {}, bodies);
+    EXPECT_EQ(built.touching(), (Pairs{{2, 0}}));
+    EXPECT_FALSE(built.within(Joints::Zero(), 0.5));
 }
 
 TEST(ArmCollision, TheFootInThePartIsACollisionFromTheStart) {

@@ -80,6 +80,8 @@ def check(
             )
         arm = reached[i]["arm"] if reached else None
         results.append(_met(job, path, found, clearance, arm, part).told(path, arm))
+    touching = sorted({name for one in results for name in one["touching"]})
+    warnings += built_together(records.plain(job.robot), touching)
     return results
 
 
@@ -94,7 +96,8 @@ def _met(
     """core.CollisionFindings."""
 
     def look() -> core.CollisionFindings:
-        return core.find_collisions(path, found, clearance, arm=arm, context=context)
+        home = robots.home_of(records.plain(job.robot))
+        return core.find_collisions(path, found, clearance, arm=arm, context=context, home=home)
 
     _, way = tool_path.digests(path)
     if way is None:
@@ -168,6 +171,20 @@ def links_left_out(robot: Json, bodies: Sequence[Json]) -> Facts:
             "{robot}: links {pairs} are not looked at against each other: their bodies touch at joint angles 0 or in more than a quarter of all postures",
             robot=robots.name(robot),
             pairs=told,
+        )
+    ]
+
+
+def built_together(robot: Json, names: Sequence[str]) -> Facts:
+    """A fact that names bodies at the flange of a job's robot that touch its link 5 at home; [] for none."""
+    if not names:
+        return []
+    return [
+        core.Fact(
+            "cell.built_together",
+            "{robot}: not checked against robot link 5, which they touch at the home posture: {bodies}",
+            robot=robots.name(robot),
+            bodies=", ".join(names),
         )
     ]
 

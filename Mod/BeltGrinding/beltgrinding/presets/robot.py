@@ -119,6 +119,12 @@ def arm_of(robot: Json) -> core.RobotArm | None:
     return arm(model_of(robot)) if given(robot) else None
 
 
+def home_of(robot: Json) -> Floats:
+    """(6,) rad: the home of the programs of a job's robot with its defaults, else joint angles 0."""
+    found: Floats = np.radians(robot["program"]["home_joints_deg"] or [0.0] * JOINTS)
+    return found
+
+
 def model_of(robot: Json) -> Json:
     """The robot.model of a job's robot with its defaults, by its joints: its preset's if it has one, or a URDF's."""
     if robot["preset"]:

@@ -48,5 +48,9 @@ def of_job(
     arm = known(robots.arm_of(robot))
     frames = (robots.frame_at_zero(robot), robots.robot_frame(robot, "flange_from_tcp"))
     axes = external_axes.for_core(robot["external_axes"])
-    passes, links = (core.ArmScene(arm, path, one, *frames, axes, context) for one in (near, whole))
+    home = robots.home_of(robot)
+    passes, links = (
+        core.ArmScene(arm, path, one, *frames, axes, home, context) for one in (near, whole)
+    )
+    warnings += collision.built_together(robot, links.touching)
     return Scenes(passes, links, whole, near)

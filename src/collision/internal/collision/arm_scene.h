@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "beltgrinding/run_context.h"
@@ -44,6 +45,9 @@ class ArmScene {
     const Coordinates& max_speed() const { return max_speed_; }
     const CellFrames& frames() const { return frames_; }
     const std::vector<CollisionBody>& bodies() const { return bodies_; }
+    /// Numbers of bodies at the flange and of link 5 that touch as they are built:
+    /// `touching_wrist`.
+    const std::vector<std::pair<std::size_t, std::size_t>>& touching() const { return touching_; }
 
     Frame base_from_tcp(const Coordinates& q) const;
     /// The flange where the tool frame is at `base_from_tcp`; of the coordinates the axes count.
@@ -88,6 +92,7 @@ class ArmScene {
     std::vector<CollisionBody> bodies_;
     std::vector<CollisionMesh> meshes_;
     std::vector<Pair> pairs_;
+    std::vector<std::pair<std::size_t, std::size_t>> touching_;
 };
 
 }  // namespace beltgrinding

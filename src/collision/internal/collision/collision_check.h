@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "beltgrinding/event.h"
@@ -35,6 +36,8 @@ struct ArmInCell {
     Frame flange_from_tcp = Frame::Identity();
     std::vector<ArmMoment> way =
         {};  ///< as check_reach tells it; stretches out of reach are left out
+    /// Where what is at the flange and touches link 5 does so as it is built; joint 6 counts.
+    Joints home = Joints::Zero();
 };
 
 struct CollisionOptions {
@@ -42,8 +45,8 @@ struct CollisionOptions {
     double resolution = 0.05;  ///< mm; bodies that touch by a shorter way may be missed
 };
 
-/// mm that two links of the arm keep from each other at most, whatever the clearance: bodies of
-/// arms are rough.
+/// mm that two links of the arm keep from each other at most, whatever the clearance, and link 5
+/// from what is at the flange: bodies of arms are rough.
 constexpr double kLinksApart = 1.0;
 
 /// How near two bodies come that move against each other; or the arm's foot and what stands still.
@@ -72,6 +75,7 @@ struct CollisionResult {
     std::vector<PairClearance> pairs;           ///< every pair that moves against each other
     std::vector<CollisionPlaces> event_places;  ///< of `events`, in their order
     std::vector<CollisionPlaces> pair_places;   ///< of `pairs`, in their order
+    std::vector<std::pair<std::size_t, std::size_t>> touching;  ///< `touching_wrist`
 };
 
 /// Follows the bodies along the path, rapid motions too, as the path goes between its poses (a
@@ -86,8 +90,8 @@ struct CollisionResult {
 ///
 /// Links go as `arm` says, by joint interpolation between its moments; each is followed against
 /// what stands still, what the robot carries and the other links. Not looked at: the foot against
-/// bodies of the base, on which it stands; the last two links against what is at the flange;
-/// neighbouring links; `touching_links`.
+/// bodies of the base, on which it stands; link 6 against what is at the flange, with which it
+/// goes, and `touching_wrist`; neighbouring links; `touching_links`.
 ///
 /// Results do not depend on the number of threads. Throws InputError (no mesh, bad options, links
 /// without an arm) and Cancelled.

@@ -28,15 +28,30 @@ std::vector<std::pair<std::size_t, std::size_t>> touching_links(
 std::vector<CollisionMesh> prepared(const std::vector<CollisionBody>& bodies, bool has_arm,
                                     const RunContext& context = {});
 
-/// Pairs that are looked at, by the numbers of the bodies; the first stands still, or the second is
-/// a link. Of links none that are neighbours; none that are next but one where a joint between
-/// cannot turn all the way round, as its limits keep them apart, and so of elbow and flange about a
-/// spherical wrist; none of `touching_links`.
-std::vector<std::pair<std::size_t, std::size_t>> pairs_looked_at(
-    const RobotArm* arm, Holding holding, const std::vector<CollisionBody>& bodies,
-    const std::vector<CollisionMesh>& meshes);
+using BodyPairs = std::vector<std::pair<std::size_t, std::size_t>>;
+
+/// What is at the flange, with the bodies of link 5, by their numbers: pairs that come within
+/// `kLinksApart`, or one within the other, at `arm.home`. They touch as they are built, as joint 6
+/// alone moves them against each other.
+BodyPairs touching_wrist(const ArmInCell& arm, const CellFrames& cell,
+                         const std::vector<CollisionBody>& bodies,
+                         const std::vector<CollisionMesh>& meshes);
+
+struct LookedAt {
+    BodyPairs pairs;     ///< by the numbers of the bodies
+    BodyPairs touching;  ///< `touching_wrist`
+};
+
+/// Pairs that are looked at; the first stands still, or the second is a link. Of links none that
+/// are neighbours; none that are next but one where a joint between cannot turn all the way round,
+/// as its limits keep them apart, and so of elbow and flange about a spherical wrist; none of
+/// `touching_links` and `touching_wrist`.
+LookedAt pairs_looked_at(const ArmInCell* arm, const CellFrames& cell,
+                         const std::vector<CollisionBody>& bodies,
+                         const std::vector<CollisionMesh>& meshes);
 
 /// The clearance that two bodies keep of the one that is asked for, mm.
-double clearance_of(const CollisionBody& first, const CollisionBody& second, double asked);
+double clearance_of(const CollisionBody& first, const CollisionBody& second, Holding holding,
+                    double asked);
 
 }  // namespace beltgrinding

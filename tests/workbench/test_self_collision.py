@@ -11,6 +11,9 @@ from beltgrinding.presets import library, robot as robots
 
 FOLDED = [90, 20, 140, 0, 0, 0]  # of the KR 6: the wrist lies in the foot
 EYE = np.eye(4)
+# Share of these postures in which the collision meshes of Universal_Robots_ROS2_Description cross, which the tubes surround:
+# measured; in none of 95 such postures were the tubes free.
+MESHES_MEET = {"ur5e": 0.032, "ur10e": 0.065}
 
 
 def path_of(frames):
@@ -54,7 +57,7 @@ def test_no_preset_meets_itself_where_robots_work(preset):
         assert not met
     else:  # whose wrists go round, through the forearm too: so do their makers' meshes
         assert {one[:2] for one in met} <= {("robot link 3", "robot link 6")}
-        assert len(met) < 0.02 * found
+        assert MESHES_MEET[preset] < len(met) / found < 0.14
     if preset != "kuka_kr210_r2700_extra":  # whose limits hardly let it
         # And it is looked at: somewhere the arm folds into itself.
         postures = random.uniform(arm.lower, arm.upper, (500, 6))
@@ -75,6 +78,43 @@ def test_a_urdfs_own_bodies_are_looked_at(tmp_path):
     fact = collision.links_left_out(robot, collision.arm_bodies(robot))
     assert [(one.code, one.arguments["pairs"]) for one in fact] == [("cell.links_left_out", "0/3")]
     assert scene(robot).within(np.zeros(6), 0.0) is None
+
+
+# Extents of the collision meshes in Universal_Robots_ROS2_Description (14 October 2024), mm, in the robot's base at joint
+# angles 0: foot, links 1 to 6.
+MEASURED = {
+    "ur5e": (
+        (-75.5, -75.5, 0.0, 75.5, 75.5, 99.1), (-60.1, -74.4, 98.6, 60.1, 60.1, 234.0),
+        (-484.6, -209.9, 102.4, 60.6, -60.2, 222.6), (-856.1, -60.4, 104.5, -366.6, 49.5, 220.3),
+        (-856.5, -171.9, 108.9, -777.8, -59.7, 218.8), (-856.5, -186.4, 23.7, -777.8, -76.6, 108.9),
+        (-854.7, -233.0, 19.3, -779.6, -187.1, 100.8),
+    ),
+    "ur10e": (
+        (-95.0, -94.9, 0.0, 94.9, 94.9, 99.3), (-76.4, -94.6, 99.0, 76.4, 76.4, 274.6),
+        (-672.4, -269.4, 104.3, 76.7, -94.8, 257.1), (-1230.3, -106.0, 122.7, -553.9, 18.8, 238.7),
+        (-1231.2, -221.3, 114.1, -1137.3, -105.9, 238.2), (-1231.2, -242.1, 14.4, -1137.2, -117.2, 114.3),
+        (-1228.7, -290.6, 9.3, -1139.9, -241.8, 106.7),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", MEASURED)
+def test_a_measured_arm_is_as_large_as_its_meshes(name):
+    robot = robots.checked({"preset": name})
+    bodies = collision.arm_bodies(robot)
+    assert [one["link"] for one in bodies] == list(range(7))
+    for one, extents in zip(bodies, np.array(MEASURED[name])):
+        points = one["mesh"].vertices
+        assert (points.min(axis=0) <= extents[:3] + 0.1).all(), one["name"]
+        assert (points.max(axis=0) >= extents[3:] - 0.1).all(), one["name"]
+        spare = np.concatenate([extents[:3] - points.min(axis=0), points.max(axis=0) - extents[3:]])
+        assert spare.max() < 60.0, one["name"]  # nor much larger
+    # Radii of the job go before it; an elbow that is folded back meets the arm.
+    thin = robots.links_of({**robot, "link_radii_mm": [1.0] * 7})
+    assert np.ptp(thin[0][0][0][:, 0]) < 3.0
+    of = scene(robot)
+    assert of.within(np.radians([0, -90, 90, -90, -90, 0]), 0.0) is None
+    assert of.within(np.radians([0, -90, 170, -90, -90, 0]), 0.0) is not None
 
 
 def test_a_whole_program_is_followed_against_the_arm_itself():

@@ -136,12 +136,17 @@ def model_of(robot: Json) -> Json:
 def links_of(
     robot: Json, wanted: tuple[str, str] = urdf_shapes.COLLISION
 ) -> list[robot_shape.Link]:
-    """[(tubes, hubs)] of a job's robot with its defaults, as ``robot_shape.links`` has them; of a URDF with bodies these,
-    and no hubs, unless the job has its own radii. ``wanted``: which of them (``urdf_shapes``)."""
+    """[(tubes, hubs)] of a job's robot with its defaults, as ``robot_shape.links`` has them; of a URDF with bodies, or
+    a preset with tubes, these, and no hubs, unless the job has its own radii. ``wanted``: which of them (``urdf_shapes``).
+    """
     if robot["model"]["urdf"] and not robot["link_radii_mm"]:
         found = urdf_shapes.bodies(robot["model"], robot["packages"], wanted)
         if found is not None:
             return [(one, robot_shape.NOTHING) for one in found]
+    if robot["preset"] and not robot["link_radii_mm"]:
+        tubes = library.find("robots", robot["preset"]).get("tubes")
+        if tubes:
+            return robot_shape.measured(tubes)
     of = arm(model_of(robot))
     return robot_shape.links(of, robot_shape.radii(robot, of), model_of(robot)["floor_mm"])
 

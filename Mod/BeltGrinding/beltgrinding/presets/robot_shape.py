@@ -79,6 +79,15 @@ def links(arm: core.RobotArm, radius: Floats, floor: float) -> list[Link]:
     return [(_joined(tubes), _joined(hubs)) for tubes, hubs in found]
 
 
+def measured(tubes: Sequence[Json]) -> list[Link]:
+    """The same, without hubs, of a preset's ``tubes``."""
+    found: list[list[Frustum]] = [[] for _ in range(7)]
+    for one in tubes:
+        begin, end = (np.array(one[key], dtype=float) for key in ("from_mm", "to_mm"))
+        found[one["link"]].append((begin, end, one["radius_mm"], one["radius_mm"]))
+    return [(_joined(one), NOTHING) for one in found]
+
+
 def body(tubes: Mesh, hubs: Mesh) -> Mesh:
     """(points, triangles) of a link as one."""
     return _merged([tubes, hubs])

@@ -37,7 +37,7 @@ class ArmScene::Placed {
     Frame base_from(std::size_t body) const {
         const CollisionBody& one = scene_.bodies_[body];
         if (one.carrier == Carrier::kLink) return base_from_robot_ * links_[one.link];
-        const Frame holder = holder_from(one.carrier, scene_.frames_);
+        Frame holder = holder_from(one.carrier, scene_.frames_);
         switch (goes_with(one, scene_.frames_.holding)) {
             case Goes::kRobot:
                 return base_from_tcp_ * holder;
@@ -54,8 +54,8 @@ class ArmScene::Placed {
     Frame base_from_robot_, base_from_room_, base_from_tcp_;
 };
 
-ArmScene::ArmScene(ArmInCell cell, const CellFrames& frames, std::vector<CollisionBody> bodies,
-                   const RunContext& context)
+ArmScene::ArmScene(const ArmInCell& cell, const CellFrames& frames,
+                   std::vector<CollisionBody> bodies, const RunContext& context)
     : ArmScene(cell, ExternalAxes({}, cell.base_from_robot), frames, std::move(bodies), context) {}
 
 ArmScene::ArmScene(ArmInCell cell, ExternalAxes axes, const CellFrames& frames,

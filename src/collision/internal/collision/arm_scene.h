@@ -29,7 +29,7 @@ class ArmScene {
 
     /// `cell.way` is not used. Bodies lie as they do with all axes at their positions. Throws
     /// InputError (no mesh, a link without number), Cancelled.
-    ArmScene(ArmInCell cell, const CellFrames& frames, std::vector<CollisionBody> bodies,
+    ArmScene(const ArmInCell& cell, const CellFrames& frames, std::vector<CollisionBody> bodies,
              const RunContext& context = {});
     /// The same with external axes, which say where the robot's base is; that of `cell` is not
     /// used.

@@ -136,9 +136,11 @@ class BeltMachinePanel(Panel):
         self.of_frame = self.add_fold("foldFrame", "Cell", self.frame, True)
         self.add_fold("foldBelt", "Belt", belt)
         self.add_fold("foldControl", "Force", control)
-        text = device.rows["ForceDevice"][1].currentText
+        choice = device.rows["ForceDevice"][1]
         none = obj.ForceDevice == "none"
-        self.of_device = self.add_fold("foldDevice", "ExportProgram", device, none, text)
+        self.of_device = self.add_fold(
+            "foldDevice", "ExportProgram", device, none, lambda: str(choice.currentText())
+        )
         for form in forms:
             form.changed = self.arrange
         self.finish()

@@ -179,6 +179,7 @@ WHOLLY_SLOW = {
     "gui/test_german_figures.py": "gui/test_translations.py",
     "gui/test_language.py": "gui/test_translations.py",
     "gui/test_panel_width.py": "gui/test_translations.py",
+    "gui/test_small_screen.py": "gui/test_looks.py",
     "gui/test_tutorial.py": "gui/test_work.py",
     "workbench/test_robot_program_document.py": "workbench/test_robot_walk.py",
     "workbench/test_study_slurm.py": "workbench/test_study_cluster.py",

@@ -466,3 +466,14 @@ def test_the_accelerations_that_feeds_count_on_are_set(tmp_path, suffix, set_the
     set_and_not = [read_program(tmp_path / f"{name}{suffix}") for name in "ab"]
     assert_same(*(one.motions for one in set_and_not))
     assert problem_codes(set_and_not[0]) == problem_codes(set_and_not[1])
+
+
+def test_external_axes_at_zero_are_none_and_others_are_refused(tmp_path):
+    motions = some_motions(np.random.default_rng(0), 5)
+    still = [dataclasses.replace(one, external=(0.0, 0.0)) for one in motions]
+    write_program(tmp_path / "still.script", None, still)
+    away = [*still[:-1], dataclasses.replace(still[-1], external=(500.0,))]
+    with pytest.raises(ProgramError, match="external axes are written as"):
+        write_program(tmp_path / "away.script", None, away)
+    write_program(tmp_path / "away.src", None, away)
+    assert "E1 500" in (tmp_path / "away.src").read_text()

@@ -111,8 +111,9 @@ class Sheet:
             )
 
     def refuse_external(self, suffix: str) -> None:
-        """Raises ProgramError for external axes in a language whose statement for them no public source shows."""
-        if any(step.external for step in self.steps):
+        """Raises ProgramError for external axes in a language whose statement for them no public source shows. All at 0, as a controller
+        without such axes writes them, are none."""
+        if any(any(step.external) for step in self.steps):
             check_external(suffix)
 
     def posture(self) -> Fact:

@@ -218,7 +218,7 @@ def test_a_search_can_be_ended_and_tells_what_the_wheel_gets_to():
     wait(lambda: plan.Fingerprint, 110)  # less than the search would take
     settle()
     assert not shown("enough") and "The wheel gets to" in field("reasons").text()
-    assert plan.InTolerance > 80.0, (plan.InTolerance, list(plan.Reasons))
+    assert plan.InTolerance > 50.0, (plan.InTolerance, list(plan.Reasons))  # the first passes alone
     press("Close")
 
 

@@ -246,8 +246,8 @@ def put_away():
         box.close()
         box.deleteLater()
     for other in widgets(QtGui.QWidget):  # the manual, the report
-        if other.isWindow() and other.isVisible() and other is not window:
-            other.close()
+        if other.isWindow() and other.isVisible() and not other.findChildren(QtGui.QMdiArea):
+            other.close()  # not the main window, whichever wrapper Python has for it
     for tabs in widgets(QtGui.QTabWidget, "combiTab"):
         tabs.setCurrentIndex(0)  # the model: what a deleted panel leaves there may not be it
     Gui.Selection.clearSelection()

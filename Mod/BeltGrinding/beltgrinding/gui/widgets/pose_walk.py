@@ -75,9 +75,10 @@ class PoseWalk(QtGui.QWidget):
 
     def choose(self, index: int) -> None:
         """Walks another program, from its first pose."""
-        arrays = self.paths[index].Proxy.arrays(self.paths[index])
+        arrays = robot_path.as_run(self.paths[index])
         self.view.robot.follow(arrays.get("joints_deg"), arrays.get("external"))
-        self.view.set_path(arrays["frames"], robot_path.as_run(self.paths[index]))
+        # The way of a program for the whole robot has places, and no feeds.
+        self.view.set_path(arrays["frames"], arrays if "feeds" in arrays else None)
         count = len(arrays["frames"])
         for widget in (self.slider, self.number):
             widget.setRange(1, max(count, 1))

@@ -238,6 +238,7 @@ def bury():
 def put_away():
     """Closes panels, docks and messages; chooses nothing."""
     Gui.Control.closeDialog()
+    main = Gui.getMainWindow()  # a walk along the focus chain may have spoilt the other wrapper
     settle()
     for dock in widgets(QtGui.QDockWidget):
         if dock.objectName() not in _docks:  # an error opens FreeCAD's report view
@@ -251,10 +252,10 @@ def put_away():
     for tabs in widgets(QtGui.QTabWidget, "combiTab"):
         tabs.setCurrentIndex(0)  # the model: what a deleted panel leaves there may not be it
     Gui.Selection.clearSelection()
-    window.statusBar().clearMessage()
+    main.statusBar().clearMessage()
     _taken.clear()
-    window.showNormal()
-    window.resize(*SMALL)
+    main.showNormal()
+    main.resize(*SMALL)
 
 
 def screenshot(path):

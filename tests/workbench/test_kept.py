@@ -250,6 +250,7 @@ VALUES = {
     "robot.program.safe_joints_deg": lambda _: [[0.0, -90.0, 90.0, 0.0, 60.0, 0.0]],
     "robot.program.joint_acceleration_deg_s2": lambda _: [500.0] * 6,
     "robot.program.joint_jerk_deg_s3": lambda _: [5000.0] * 6,
+    "robot.program.base": lambda _: "FIXTURE",
     "cell.bodies.0.name": lambda _: "pillar",
     "cell.bodies.0.file": lambda folder: str(folder / "other.brep"),
     "cell.bodies.0.brep": lambda _: OwnBrep(box(4.0, 4.0)[0]),

@@ -272,7 +272,7 @@ def test_passes_are_laid_and_planned_and_applied_together():
         beltgrinding.make_plan(job, LayPasses=True)
         raise AssertionError("two paths")
     except InputError as error:
-        assert "one raster path" in str(error), error
+        assert "one active raster path" in str(error), error
 
 
 @pytest.mark.slow

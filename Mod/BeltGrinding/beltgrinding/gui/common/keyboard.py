@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ...objects.living import GONE
-from .compat import QtCore
+from .compat import QtCore, QtGui
 from .kinds import QtEvent, Widget
 
 
@@ -36,6 +36,18 @@ def take_keyboard(form: Widget) -> None:
         try:
             form.setFocus()
         except GONE:
-            pass  # closed again
+            return  # closed again
+        QtCore.QTimer.singleShot(0, to_the_top)
+
+    def to_the_top() -> None:
+        """OK and Cancel stand above the form, which the view scrolls to."""
+        try:
+            area = form.parentWidget()
+            while area is not None and not isinstance(area, QtGui.QScrollArea):
+                area = area.parentWidget()
+            if area is not None:
+                area.verticalScrollBar().setValue(0)
+        except GONE:
+            pass
 
     QtCore.QTimer.singleShot(0, focus)  # once it is shown

@@ -11,6 +11,7 @@ from ...objects.kinds import DocumentObject
 from ...objects.proxy import type_of
 from ...objects.simulation import Simulation
 from ..common.compat import QtGui, translate
+from ..common.kinds import Widget
 from ..common.messages import error_text
 from ..widgets.form import Form
 from .panel import Panel
@@ -28,7 +29,8 @@ class BeltPanel(Panel):
         self.left.setObjectName("remainingCut")
         self.left.setWordWrap(True)
         self.body.addWidget(self.left)
-        self.buttons = []
+        self.buttons: list[Widget] = []
+        self.fill()  # before the buttons, so that Tab comes to them after the fields
         for name, text, action in (
             ("countRun", translate("BeltGrinding", "Count the simulated grind"), self.count),
             ("newBelt", translate("BeltGrinding", "New belt"), self.renew),
@@ -39,7 +41,6 @@ class BeltPanel(Panel):
             self.body.addWidget(button)
             self.buttons.append(button)
         self.finish()
-        self.fill()
 
     def fill(self) -> None:
         """The fields anew: the buttons change the properties."""
@@ -51,9 +52,10 @@ class BeltPanel(Panel):
         self.fields.add("RemovedVolume", translate("BeltGrinding", "Removed"), unit="mm³")
         self.fields.add("Loading", translate("BeltGrinding", "Loading (0 to 1)"))
         self.place.addWidget(self.fields)
-        order = [*(widget for _, widget in self.fields.rows.values()), *self.buttons]
-        for one, following in zip(order, order[1:]):
-            QtGui.QWidget.setTabOrder(one, following)
+        last = self.fields
+        for button in self.buttons:  # behind fields that are newer than they
+            QtGui.QWidget.setTabOrder(last, button)
+            last = button
         text = translate("BeltGrinding", "Remaining cut: {:.1f} % of a fresh belt's")
         self.left.setText(text.format(self.obj.RemainingCut))
 

@@ -21,7 +21,10 @@ from support.freecad import FreeCad
 FREECADS = {"FreeCAD", "FreeCADGui", "PySide", "pivy", "Part", "Mesh", "MeshPart", "Path", "Robot"}
 FREECADS |= {"Import", "Inspection", "Points", "importlib_freecad"}
 ASKS = re.compile(r"\bmark\.freecad\b|\bfreecad\.call\(")
-TRACEBACK = re.compile(r"^Traceback \(most recent call last\):\n(?: .*\n)*(.*)", re.M)
+# FreeCAD cuts a long traceback off, anywhere, and prints the error behind it.
+TRACEBACK = re.compile(
+    r"^Traceback \(most recent call last\):\n(?:(?! .*<class 'beltgrinding) .*\n)*(.*)", re.M
+)
 REFUSED = re.compile(r"InputError|<class 'beltgrinding[\w.]*Error'>")
 _place = pytest.StashKey()  # of an item: where it runs
 _shared = pytest.StashKey()  # of the session: {whether it has a window: FreeCad}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ...objects.living import GONE
-from .compat import QtCore, QtGui
+from .compat import QtCore
 from .kinds import QtEvent, Widget
 
 
@@ -36,18 +36,6 @@ def take_keyboard(form: Widget) -> None:
         try:
             form.setFocus()
         except GONE:
-            return  # closed again
-        QtCore.QTimer.singleShot(0, to_the_top)
-
-    def to_the_top() -> None:
-        """OK and Cancel stand above the form, which the view scrolls to."""
-        try:
-            area = form.parentWidget()
-            while area is not None and not isinstance(area, QtGui.QScrollArea):
-                area = area.parentWidget()
-            if area is not None:
-                area.verticalScrollBar().setValue(0)
-        except GONE:
-            pass
+            pass  # closed again
 
     QtCore.QTimer.singleShot(0, focus)  # once it is shown

@@ -81,7 +81,7 @@ def test_the_keyboard_sets_one_up_and_a_button_runs_one():
     assert made[1:] == [("knife", "knife")] and ran == ["BeltGrinding_Simulate"]
     bury()
 
-    # What goes wrong is told, and the dock stays; so it does beside a panel.
+    # The dock shows a mistake and stays open; so it does beside a panel.
     def fails(*_):
         raise beltgrinding.InputError("test.none", "no such example")
 

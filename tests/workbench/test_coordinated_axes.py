@@ -1,5 +1,6 @@
 """External axes that move in the passes: a rim that no standing table lets the arm do; proved by KDL and FCL."""
 
+import copy
 import math
 
 import numpy as np
@@ -187,6 +188,13 @@ def test_it_reads_again_with_its_axes(name, turned, tmp_path):
         assert motion.external == pytest.approx(move.external, abs=1e-6)
     found = writing.joints_of_file(file, job)
     assert np.abs(found - np.stack([one.joints_deg for one in whole.moves])).max() < 1e-3
+    # An unsafe one says both.
+    unsafe = copy.deepcopy(whole)
+    unsafe.problems.append(core.Fact("test.problem", "it hits a post"))
+    writing.write(file, job, unsafe, bases=BASES[name], unsafe=True)
+    head = file.read_text()
+    assert "UNSAFE: it hits a post" in head and "E1 moves in the passes" in head
+    writing.write(file, job, whole, bases=BASES[name])
     # What reads otherwise is noticed: the table a degree further at one pose.
     value = f"{whole.moves[20].external[0]:.6f}".rstrip("0").rstrip(".")
     other = value.replace(value.split(".")[0], str(int(value.split(".")[0]) + 1), 1)

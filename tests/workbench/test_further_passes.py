@@ -89,13 +89,21 @@ def test_places_are_ground_by_the_group_that_gets_there():
     [
         ({"feed_mm_s": 20.0}, "feed_mm_s"),
         ({"along": "auto"}, "along"),
-        ({"region_points": [[0.0, 0.0, 900.0]]}, "off the faces"),
+        ({"region_points": [[0.0, 0.0, 900.0]]}, r"further_passes\[0\]: .*off the faces"),
         ({"further_passes": []}, "further_passes"),
     ],
 )
 def test_a_group_that_cannot_be_laid_is_refused(group, text):
     with pytest.raises(InputError, match=text):
         raster_path.raster(job_with(plate()), {**ALONG_X, "further_passes": [group]})
+
+
+def test_a_group_without_room_is_refused_and_named():
+    bottom = [[x, 0.0, 0.0] for x in (8.0, 10.0, 12.0)]  # of the first trough, which lies along x
+    across = {**ACROSS, "region_points": bottom, "region_mm": 3.0}
+    settings = {**ALONG_X, "max_tilt_deg": 0.0, "step_over_mm": 2.0}
+    with pytest.raises(InputError, match=r"further_passes\[0\]: the wheel fits nowhere there"):
+        raster_path.raster(job_with(troughs()), {**settings, "further_passes": [across]})
 
 
 def test_too_many_poses_are_refused(monkeypatch):

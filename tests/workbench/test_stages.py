@@ -181,3 +181,5 @@ def test_stages_of_an_earlier_plan_are_told(tmp_path):
 def test_a_region_is_the_stages_own():
     with pytest.raises(InputError, match="choose their own regions"):
         stages.first_settings({"region_points": [[0.0, 0.0, 0.0]]})
+    with pytest.raises(InputError, match="further_passes: stages choose their own regions"):
+        stages.first_settings({"further_passes": [{"belt_angle_deg": 90.0}]})

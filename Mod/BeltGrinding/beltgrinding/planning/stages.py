@@ -379,10 +379,11 @@ def _mean_stock(job: Json, context: core.RunContext) -> float:
 def first_settings(given: Json) -> dict[str, Any]:
     """Settings of the raster that stages begin with, validated. Raises InputError for a region, which is the stages' own."""
     found = raster_path.validate(given)
-    if found["region_points"]:
-        raise InputError(
-            "planning.stages_region", "{key}: stages choose their own regions", key="region_points"
-        )
+    for key in ("region_points", "further_passes"):
+        if found[key]:
+            raise InputError(
+                "planning.stages_region", "{key}: stages choose their own regions", key=key
+            )
     return found
 
 

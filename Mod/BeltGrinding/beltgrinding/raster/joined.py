@@ -13,6 +13,7 @@ from ..engine import Fact, InputError
 from . import reachable
 from .clearing import Clearing
 
+KEY = "raster.further_passes"
 MOST_POSES = 300_000
 OF_POSES = ("contacts", "frames", "feeds", "forces", "rapid", "contact", "lines", "zones")
 SUMMED = ("cuts", "beside", "stuck")
@@ -67,7 +68,7 @@ def repeat(result: dict[str, Any], count: int, clearing: Clearing) -> list[Fact]
     return told
 
 
-def _refuse(poses: int, key: str = "raster.further_passes") -> None:
+def _refuse(poses: int, key: str = KEY) -> None:
     if poses > MOST_POSES:
         raise InputError(
             "raster.too_many_poses",

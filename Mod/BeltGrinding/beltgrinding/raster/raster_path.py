@@ -100,6 +100,12 @@ def raster(job: Job | Json, settings: Json, context: Context = None) -> dict[str
 
     def group(settings: Json) -> tuple[dict[str, Any], Clearing]:
         one, levels, clearing = _laid(read, given, shape, faces, settings, warnings, context)
+        if found and one["no_room"]:  # else the first group's warnings would speak for it
+            raise InputError(
+                "raster.no_room_for_group",
+                "{tool} fits nowhere there; give another direction or belt angle",
+                tool=clearing.tool.name,
+            )
         one["places"] = _places(read, shape, faces, settings, one, levels, clearing, context)
         return one, clearing
 
@@ -109,7 +115,16 @@ def raster(job: Job | Json, settings: Json, context: Context = None) -> dict[str
         way, tried = direction.best(read, given, shape, faces, first, lay, context)
         settings = {**settings, **way}
     warnings: Facts = []
-    found = [group(one) for one in joined.groups(settings)]
+    found: list[tuple[dict[str, Any], Clearing]] = []
+    for number, one in enumerate(joined.groups(settings)):
+        try:
+            found.append(group(one))
+        except InputError as error:
+            if number:
+                raise error.within(
+                    "raster.of_group", "{key}[{index}]: ", key=joined.KEY, index=number - 1
+                ) from None
+            raise
     result, clearing = joined.join([one for one, _ in found]), found[0][1]
     telling.ends(result, settings, warnings)
     telling.ways(clearing, result, warnings)

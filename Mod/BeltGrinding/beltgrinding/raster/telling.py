@@ -1,4 +1,4 @@
-"""What is told of a raster path: ends, ways, places without room."""
+"""Warnings about a raster path: ends, ways, places without room."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from . import passes
 from .clearing import Clearing
 from .kinds import Levels
 
-CLOSED = 0.5  # of the length of rings; less is told
+CLOSED = 0.5  # of the length of rings; less gets a warning
 
 
 def ends(result: dict[str, Any], settings: Json, warnings: Facts) -> None:
@@ -46,12 +46,12 @@ def ways(clearing: Clearing, result: dict[str, Any], warnings: Facts) -> None:
 
 
 def fit(clearing: Clearing, settings: Json, result: dict[str, Any], warnings: Facts) -> Floats:
-    fit = np.zeros(len(result["frames"]))
+    depth = np.zeros(len(result["frames"]))
     touching = np.flatnonzero(result["contact"])
-    fit[touching] = clearing.tool_depth(result["contacts"][touching])
-    tight = np.flatnonzero(fit > settings["fit_mm"] * (1.0 + 1e-6) + 1e-9)
+    depth[touching] = clearing.tool_depth(result["contacts"][touching])
+    tight = np.flatnonzero(depth > settings["fit_mm"] * (1.0 + 1e-6) + 1e-9)
     if len(tight):
-        worst = int(np.argmax(fit))
+        worst = int(np.argmax(depth))
         warnings.append(
             core.Fact(
                 "raster.wheel_does_not_fit",
@@ -60,7 +60,7 @@ def fit(clearing: Clearing, settings: Json, result: dict[str, Any], warnings: Fa
                 tool=clearing.tool.name,
                 smaller=clearing.tool.smaller,
                 count=len(tight),
-                depth=fit[worst],
+                depth=depth[worst],
                 pose=worst + 1,
             )
         )
@@ -77,7 +77,7 @@ def fit(clearing: Clearing, settings: Json, result: dict[str, Any], warnings: Fa
                 bodies=", ".join(clearing.in_the_way(result["contacts"][touching])),
             )
         )
-    return fit
+    return depth
 
 
 def no_room(result: dict[str, Any], clearing: Clearing, warnings: Facts) -> None:

@@ -128,9 +128,10 @@ def write(
         "load": _load(job),
     }
     made = program(whole, job)
-    options["comment"] = _comment(robot)
+    told = [_comment(robot)]
     if unsafe and whole.problems:
-        options["comment"] = "UNSAFE: " + "; ".join(str(fact) for fact in whole.problems)
+        told.insert(0, "UNSAFE: " + "; ".join(str(fact) for fact in whole.problems))
+    options["comment"] = "; ".join(filter(None, told))
     file.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=file.parent) as folder:
         tried = Path(folder, file.name)
@@ -214,10 +215,8 @@ def _followed(job: Job, arrays: dict[str, Any], external: Floats) -> Floats:
                 base = base_of(values + share * (to - values))
                 pose = np.linalg.inv(base) @ frames.between(frame, target, share)
                 rows = arm.inverse(pose @ np.linalg.inv(tool), at)
-                near = (
-                    rows[np.argmin(np.abs(rows - at).max(axis=1))] if len(rows) else at * math.nan
-                )
-                at = near
+                lost = np.full(6, math.nan)
+                at = rows[np.argmin(np.abs(rows - at).max(axis=1))] if len(rows) else lost
         found.append(np.degrees(at))
         frame, values = target, to
     return np.stack(found)

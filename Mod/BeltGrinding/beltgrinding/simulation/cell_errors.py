@@ -20,7 +20,7 @@ from ..job.tolerances import narrowest_band
 from .convergence_record import BAND_SHARE
 
 MARGIN = 1.25  # on an extrapolation, by Roache (convergence)
-DEPTH_SHARE = 0.1  # of the depth ground: errors above it are told
+DEPTH_SHARE = 0.1  # of the depth ground: errors above it count as coarse
 RINGS = 1  # of samples round one, the largest of which it takes: signs change from one to the next
 UNDECIDED = 0.2  # of the ground area: more is warned of; the errors are on the safe side
 

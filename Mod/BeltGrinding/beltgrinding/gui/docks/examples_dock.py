@@ -16,7 +16,7 @@ from ..common.messages import report
 NAME = "BeltGrinding_ExamplesDock"
 PICTURE, ROW = 64, 24  # pixels of the picture, and of one in the list
 WIDTH = 280  # pixels
-EXAMPLE = QtCore.Qt.UserRole  # of an item: its row of TOPICS
+EXAMPLE = QtCore.Qt.UserRole  # of an item: name of its example
 Act = Callable[[str], object]  # with a name of ``examples``
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 TOPICS = (  # topic: name of ``examples``, icon, title, sentence

@@ -300,7 +300,8 @@ class VerdictDock(ObjectDock):
             self.poses.hide()
             return
         self.wheel = CellView(self.shown().Document, path.Machine)
-        self.wheel.set_path(path.Proxy.arrays(path)["frames"], robot_path.as_run(path))
+        arrays = robot_path.as_run(path)
+        self.wheel.set_path(arrays["frames"], arrays)
         self.wheel.set_pose(pose)
 
     def open_program(self, row: int) -> None:

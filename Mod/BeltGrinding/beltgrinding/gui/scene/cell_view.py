@@ -107,7 +107,7 @@ class CellView:
         self.scenes = []
 
     def set_path(self, poses: Array, motions: Mapping[str, Array] | None = None) -> None:
-        """base_from_tcp (n, 4, 4) in mm of the path that is walked. ``motions``: as ``loads.at_pose`` takes them."""
+        """base_from_tcp (n, 4, 4) in mm of the path that is walked. ``motions``: the arrays that ``loads.of_motion`` takes."""
         self.poses, self.pose, self.frame = np.asarray(poses, dtype=float), 0, None
         self.motions = motions
         self.update()

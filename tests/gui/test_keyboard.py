@@ -83,6 +83,9 @@ def test_from_a_job_to_its_report_by_the_keyboard():
     press_keys("Escape")
     wait(lambda: not Gui.Control.activeDialog())
     until(lambda: doc.getObject("Deviation") is not None and Gui.Control.activeDialog(), "g", "d")
+    settle()
+    buttons = [one for one in visible(QtGui.QPushButton) if one.text().replace("&", "") == "OK"]
+    assert any(not one.visibleRegion().isEmpty() for one in buttons)  # not scrolled past
     press_keys("Return")
     wait(lambda: not Gui.Control.activeDialog())
     assert doc.getObject("Deviation") is not None

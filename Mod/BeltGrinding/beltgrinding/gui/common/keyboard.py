@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ...objects.living import GONE
-from .compat import QtCore
+from .compat import QtCore, QtGui
 from .kinds import QtEvent, Widget
 
 
@@ -29,12 +29,18 @@ def space_presses(form: Widget) -> None:
 
 def take_keyboard(form: Widget) -> None:
     """Gives a panel the keyboard: the next Tab goes to its first field. FreeCAD leaves it in the 3D view, which keeps Tab
-    for itself. The form itself takes it, so that no field changes under the mouse's wheel."""
-    form.setFocusPolicy(QtCore.Qt.ClickFocus)
+    for itself. A pixel at the form's top takes it: no field then changes under the mouse's wheel, and the view does not
+    scroll to the form's end, past OK and Cancel."""
+    first = QtGui.QWidget(form)
+    first.setGeometry(0, 0, 1, 1)
+    for widget in (form, first):
+        widget.setFocusPolicy(QtCore.Qt.ClickFocus)
+    first.show()
 
     def focus() -> None:
         try:
-            form.setFocus()
+            QtGui.QWidget.setTabOrder(form, first)
+            first.setFocus()
         except GONE:
             pass  # closed again
 

@@ -30,9 +30,11 @@ def test_what_cannot_be_without_a_name_says_so(tmp_path):
 
 
 def test_elsewhere_it_is_a_files_name(tmp_path, monkeypatch):
+    from beltgrinding import cli
     from beltgrinding.base.files import write_whole
     from beltgrinding.base.regular_files import read_regular
 
     monkeypatch.chdir(tmp_path)
+    assert cli.main(["faces", "missing.step"]) == 2  # also once a command has run in this process
     write_whole("-", b"abc")
     assert (tmp_path / "-").read_bytes() == read_regular("-", 9) == b"abc"

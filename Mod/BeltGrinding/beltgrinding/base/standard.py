@@ -5,20 +5,31 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 NAME = "-"
 
 
 class _Streams:
-    allowed = False  # elsewhere "-" is a file of that name
+    allowed = False  # when not, "-" is a file of that name
     read: bytes | None = None  # what came, for those who read it again
     output: int | None = None  # a descriptor of what was standard output
 
 
-def allow() -> None:
-    """Takes ``-`` for standard input and output from now on."""
+@contextlib.contextmanager
+def allowed() -> Iterator[None]:
+    """Takes ``-`` for standard input and output meanwhile."""
     _Streams.allowed = True
+    try:
+        yield
+    finally:
+        _Streams.allowed, _Streams.read = False, None
+        if _Streams.output is not None:
+            sys.stdout.flush()
+            os.dup2(_Streams.output, sys.stdout.fileno())
+            os.close(_Streams.output)
+            _Streams.output = None
 
 
 def named(path: Path | str) -> bool:

@@ -120,9 +120,9 @@ def _main(argv, messages):
         else:
             from ..base import standard
 
-            standard.allow()
             arguments.status = 0  # a command may set it
-            arguments.do(arguments)
+            with standard.allowed():
+                arguments.do(arguments)
     except InputError as error:
         messages.print_error(error)
         return 2

@@ -120,6 +120,7 @@ CHANGES = [
     [(f"{DEVIATION}.ColourBy", "measured")],
     [(f"{DEVIATION}.ColourBy", "difference")],
     [(f"{DEVIATION}.ColourBy", "uncertainty")],
+    [(f"{DEVIATION}.ColourBy", "error of the cells")],
     [(f"{DEVIATION}.ColourBy", "temperature")],
     [(f"{DEVIATION}.Bounds", "by tolerance"), (f"{DEVIATION}.TimesTolerance", 2.0)],
     [(f"{DEVIATION}.Bounds", "by percentile"), (f"{DEVIATION}.Percentile", 30.0)],
@@ -239,6 +240,24 @@ def test_what_is_not_known_is_grey_and_says_so():
     job.Finish = json.dumps({"grit": 120})
     beltgrinding.simulate(job)
     assert said("roughness")[:2] == ["Deviation", "roughness Ra"]
+
+
+def test_the_error_of_the_cells_has_colours_a_legend_and_a_figure():
+    job, doc, deviation = worked()
+    error = deviation.CellError95.Value
+    assert 0.0 < error < 0.1
+    deviation.ColourBy = "error of the cells"
+    doc.recompute()
+    settle()
+    assert len(set(deviation.VertexColors)) > 20
+    (legend,) = deviation.ViewObject.Proxy.legends()
+    assert legend.spec.title == "error of the cells, mm" and legend.spec.colours
+    assert error <= float(legend.spec.labels[1.0]) < 6.0 * error
+    deviation.ViewObject.Proxy.doubleClicked(deviation.ViewObject)
+    settle()
+    table = field("statistics")
+    assert "Error of the cells, 95 %" in [table.item(i, 0).text() for i in range(table.rowCount())]
+    press("OK")
 
 
 def test_legends_name_object_quantity_and_unit_and_follow_the_preferences():

@@ -52,6 +52,12 @@ OUTPUTS = (
     Output("BelowTolerance", "Float", "Statistics", "share of the area cut too deep, percent"),
     Output("UncertaintyMean", "Distance", "Statistics", "mean standard deviation of the deviation"),
     Output("Uncertainty95", "Distance", "Statistics", "95 % of the area are surer than that"),
+    Output(
+        "CellError95",
+        "Distance",
+        "Statistics",
+        "95 % of the area are less off by the size of the contact's cells; 0: not known",
+    ),
     Output("ExpectedInTolerance", "Float", "Statistics", "mean probability, percent; 0: not known"),
     Output(
         "StartTemperature", "Float", "Temperature", "of the part before it was ground, degrees C"
@@ -123,7 +129,8 @@ class Deviation(Proxy):
         if "ColourBy" not in obj.PropertiesList:
             text = (
                 "what the colours show; uncertainty: of a calibrated law; measured, difference: of a scan; "
-                "temperature: the greatest, of a job with Heat; roughness: Ra, of a job with Finish"
+                "temperature: the greatest, of a job with Heat; roughness: Ra, of a job with Finish; "
+                "error of the cells: what their size leaves open of the height"
             )
             obj.addProperty("App::PropertyEnumeration", "ColourBy", "Deviation", text)
             obj.ColourBy = MODES
@@ -255,6 +262,8 @@ def show(obj: DocumentObject, field: Field, scale: Scale, new_mesh: bool = True)
     obj.UncertaintyMean, obj.Uncertainty95 = statistics.get("sd_mean", 0.0), sd
     obj.ExpectedInTolerance = 100.0 * statistics.get("expected_in_tolerance_share", 0.0)
     obj.UncertaintyLimit = round_up(sd)
+    known = shown.has(field, shown.CELL_ERROR)
+    obj.CellError95 = shown.percentile(field, field.height_error, 95.0) if known else 0.0
     _show_temperatures(obj, field)
     _show_finish(obj, field)
     obj.ToleranceLower, obj.ToleranceUpper, obj.ColourLimit = scale

@@ -53,8 +53,8 @@ class Reader:
 
     def sample(self, index: int) -> dict[str, Any]:
         """The reading of sample ``index``, a dict: sample, deviation (mm; None where no stock was
-        met), verdict, removed and stock (mm, along the normal), uncertainty (1 sd in mm, None if not
-        known), coarse (it is a coarse run's), segment (its lower and upper end along the normal, mm), face ("Object.FaceN"), point
+        met), verdict, removed and stock (mm, along the normal), uncertainty (1 sd in mm) and cell_error (mm), None if not
+        known, coarse (it is a coarse run's), segment (its lower and upper end along the normal, mm), face ("Object.FaceN"), point
         (on the design), top (on the ground surface), normal; mm, work frame."""
         self.update()
         field, obj = self.field, self.obj
@@ -74,6 +74,7 @@ class Reader:
             "removed": max(stock - height, 0.0),
             "stock": stock,
             "uncertainty": float(field.height_sd[index]) if len(field.height_sd) else None,
+            "cell_error": float(field.height_error[index]) if len(field.height_error) else None,
             "segment": (-field.depth, height),
             "face": face_name(obj.getParentGroup(), int(field.faces[index])),
             "point": tuple(field.points[index].tolist()),

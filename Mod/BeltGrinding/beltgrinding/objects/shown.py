@@ -18,11 +18,12 @@ DEVIATION, UNCERTAINTY = "deviation", "uncertainty"
 # Of a scan: its height, and that less the predicted.
 MEASURED, DIFFERENCE = "measured", "difference"
 TEMPERATURE, ROUGHNESS = "temperature", "roughness"
-MODES = [DEVIATION, UNCERTAINTY, MEASURED, DIFFERENCE, TEMPERATURE, ROUGHNESS]
+CELL_ERROR = "error of the cells"
+MODES = [DEVIATION, UNCERTAINTY, MEASURED, DIFFERENCE, TEMPERATURE, ROUGHNESS, CELL_ERROR]
 HEIGHTS = (DEVIATION, MEASURED, DIFFERENCE)  # with a tolerance
 BY_HAND, BY_TOLERANCE, BY_PERCENTILE = "by hand", "by tolerance", "by percentile"
 MOST_BANDS = 20
-LEAST_SPAN = {TEMPERATURE: 1.0, ROUGHNESS: 1e-3, UNCERTAINTY: 1e-6}  # K, µm, mm
+LEAST_SPAN = {TEMPERATURE: 1.0, ROUGHNESS: 1e-3, UNCERTAINTY: 1e-6, CELL_ERROR: 1e-6}  # K, µm, mm
 
 
 class Shown(NamedTuple):
@@ -51,6 +52,8 @@ class Shown(NamedTuple):
             return np.full(len(field.height), np.nan)
         if self.mode == UNCERTAINTY:
             return np.array(field.height_sd, dtype=float)
+        if self.mode == CELL_ERROR:
+            return np.array(field.height_error, dtype=float)
         if self.mode == TEMPERATURE:
             return np.array(field.heat["rise"], dtype=float)
         if self.mode == ROUGHNESS:
@@ -82,6 +85,8 @@ def has(field: Field, mode: str) -> bool:
     """Whether a core.HeightField has what a mode shows, at one sample at least."""
     if mode == UNCERTAINTY:
         return len(field.height_sd) > 0
+    if mode == CELL_ERROR:
+        return len(field.height_error) > 0
     if mode in (MEASURED, DIFFERENCE):
         return len(field.measured) > 0 and bool(np.isfinite(field.measured).any())
     if mode == TEMPERATURE:
@@ -139,6 +144,8 @@ def _ends(obj: DocumentObject, mode: str) -> tuple[float, float]:
     """Where the colours of a mode without a tolerance begin and end."""
     if mode == UNCERTAINTY:
         return 0.0, obj.UncertaintyLimit.Value
+    if mode == CELL_ERROR:
+        return 0.0, round_up(obj.CellError95.Value)
     if mode == TEMPERATURE:
         return obj.StartTemperature, max(obj.GreatestTemperature, obj.StartTemperature + 1.0)
     if mode == ROUGHNESS:
@@ -158,20 +165,20 @@ def bounded(obj: DocumentObject, field: Field, scale: Scale) -> Scale:
     if obj.Bounds == BY_TOLERANCE:
         limit = obj.TimesTolerance * widest
     elif obj.Bounds == BY_PERCENTILE:
-        limit = percentile(field, obj.Percentile)
+        limit = percentile(field, field.height, obj.Percentile)
     return lower, upper, max(limit, 1.01 * widest, 1e-4)
 
 
-def percentile(field: Field, share: float) -> float:
-    """|deviation| in mm that ``share`` percent of the area lie within; missed samples are left out."""
+def percentile(field: Field, values: Any, share: float) -> float:
+    """The magnitude of ``values`` (n,) that ``share`` percent of the area lie within; missed samples are left out."""
     found = (field.flags & core.MISSED) == 0
-    height, area = np.abs(field.height[found]), field.areas[found].astype(float)
-    if not len(height):
+    sizes, area = np.abs(np.asarray(values)[found]), field.areas[found].astype(float)
+    if not len(sizes):
         return 0.0
-    order = np.argsort(height)
+    order = np.argsort(sizes)
     so_far = np.cumsum(area[order])
     k = np.searchsorted(so_far, np.clip(share, 0.0, 100.0) / 100.0 * so_far[-1])
-    return float(height[order[min(k, len(order) - 1)]])
+    return float(sizes[order[min(k, len(order) - 1)]])
 
 
 def round_up(value: float) -> float:

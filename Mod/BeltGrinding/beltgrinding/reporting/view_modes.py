@@ -74,6 +74,9 @@ def modes(
                 field.height_sd,
             )
         )
+    if len(field.height_error) == field.size:
+        label = words("Error of the cells: what their size leaves open")
+        found.append(made.ramp("cells", label, "mm", 4, field.height_error))
     if len(field.measured) == field.size:
         measured = np.array(field.measured, dtype=float)
         found.append(

@@ -73,6 +73,11 @@ class DeviationPanel(Panel):
                 obj.GreatestTemperature > 0.0,
             ),
             ("roughness", translate("BeltGrinding", "Roughness"), obj.GreatestRoughness > 0.0),
+            (
+                "error of the cells",
+                translate("BeltGrinding", "Error of the cells"),
+                obj.CellError95.Value > 0.0,
+            ),
         )
         return {name: text for name, text, there in modes if there or name == obj.ColourBy}
 
@@ -130,6 +135,9 @@ class DeviationPanel(Panel):
                     mm(obj.Uncertainty95, ""),
                 ),
             )
+        if obj.CellError95.Value > 0.0:
+            name = translate("BeltGrinding", "Error of the cells, 95 %")
+            rows += ((name, mm(obj.CellError95, "")),)
         if obj.GreatestTemperature > 0.0:  # never without its range
             most = f"{figure(obj.GreatestTemperatureAtMost, '.0f')} °C"
             rows += (

@@ -23,6 +23,7 @@ MODES = {
     shown.UNCERTAINTY: field_view.UNCERTAINTY,
     shown.TEMPERATURE: field_view.TEMPERATURE,
     shown.ROUGHNESS: field_view.ROUGHNESS,
+    shown.CELL_ERROR: field_view.CELL_ERROR,
 }
 
 

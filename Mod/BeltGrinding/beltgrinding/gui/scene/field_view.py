@@ -22,10 +22,13 @@ STOCK_NODES = "BELTGRINDING_STOCK_NODES"  # environment: set, to do without SoHe
 PICK_RADIUS = 1.0  # pixels
 DEVIATION, REMOVED, UNCERTAINTY, FACE = "deviation", "removed depth", "uncertainty", "face"
 PRESSURE, CONTACT, TEMPERATURE = "pressure", "contact", "temperature"
-ROUGHNESS = "roughness"
+ROUGHNESS, CELL_ERROR = "roughness", "error of the cells"
 LEAST = 1e-9  # of a scale: half its range
 PALETTE = 2048  # colours from one end of a scale to the other
-MODES = (DEVIATION, REMOVED, UNCERTAINTY, FACE, PRESSURE, CONTACT, TEMPERATURE, ROUGHNESS)
+MODES = (
+    *(DEVIATION, REMOVED, UNCERTAINTY, FACE, PRESSURE, CONTACT, TEMPERATURE, ROUGHNESS),
+    CELL_ERROR,
+)
 
 
 def _coin_module() -> Any:

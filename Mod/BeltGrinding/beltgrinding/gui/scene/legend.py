@@ -39,6 +39,9 @@ def of(picture: shown.Shown, name: str, out_of_date: bool = False) -> Spec:
         found = _unknown(picture.mode, out_of_date)
     elif picture.mode == shown.UNCERTAINTY:
         found = uncertainty(picture.end, out_of_date)
+    elif picture.mode == shown.CELL_ERROR:
+        text = translate("BeltGrinding", "error of the cells, {}")
+        found = uncertainty(picture.end, out_of_date, text)
     elif picture.mode == shown.TEMPERATURE:
         found = temperature(picture.start, picture.end - picture.start, out_of_date)
     elif picture.mode == shown.ROUGHNESS:
@@ -63,6 +66,7 @@ def _unknown(mode: str, out_of_date: bool) -> Spec:
         shown.DIFFERENCE: translate("BeltGrinding", "scan - prediction"),
         shown.TEMPERATURE: translate("BeltGrinding", "greatest temperature"),
         shown.ROUGHNESS: translate("BeltGrinding", "roughness Ra"),
+        shown.CELL_ERROR: translate("BeltGrinding", "error of the cells"),
     }
     reasons = {
         shown.UNCERTAINTY: translate("BeltGrinding", "not known: the law was not calibrated"),
@@ -72,6 +76,7 @@ def _unknown(mode: str, out_of_date: bool) -> Spec:
         shown.ROUGHNESS: translate(
             "BeltGrinding", "not known anywhere: the belt or its wear was not measured"
         ),
+        shown.CELL_ERROR: translate("BeltGrinding", "not known: this run estimated none"),
     }
     grey = int(core.colour_scale(-1.0, 1.0, 2.0, [np.nan])[0])
     marks = (Mark(grey, reasons[mode]),)
@@ -178,14 +183,15 @@ def label_values(lower: float, upper: float, limit: float, bands: int = 0) -> li
     return values
 
 
-def uncertainty(limit: float, out_of_date: bool = False) -> Spec:
-    """The ``Spec`` of the deviation's standard deviation, up to ``limit`` mm."""
+def uncertainty(limit: float, out_of_date: bool = False, text: str = "") -> Spec:
+    """The ``Spec`` of the deviation's standard deviation, up to ``limit`` mm, or of what else ``text``, with {} for
+    the unit, tells."""
     colours = core.uncertainty_scale(
         limit, [limit * (k + 0.5) / BAR_STEPS for k in range(BAR_STEPS)]
     )
     unit = preferences.deviation_unit()
     labels = {k / 4: figure(limit * k / 4 / unit.size, ".3g") for k in range(5)}
-    text = translate("BeltGrinding", "uncertainty, {}").format(unit.symbol)
+    text = (text or translate("BeltGrinding", "uncertainty, {}")).format(unit.symbol)
     return Spec(colours.tolist(), labels, text, ("", ""), (False, True), _warning(out_of_date))
 
 

@@ -146,9 +146,14 @@ def describe(reading: Json) -> list[str]:
     deviation = told(reading["deviation"])
     if reading["uncertainty"] is not None:
         deviation += f" ± {told(reading['uncertainty'], sign='')}"
+    cells = []
+    if reading["cell_error"] is not None:
+        text = translate("BeltGrinding", "cells leave open {}")
+        cells = [text.format("± " + told(reading["cell_error"], sign=""))]
     low, high = reading["segment"]
     return [
         f"{deviation}: {verdict}",
+        *cells,
         translate("BeltGrinding", "removed")
         + f" {told(reading['removed'], sign='')} "
         + translate("BeltGrinding", "of")

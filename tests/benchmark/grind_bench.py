@@ -68,10 +68,7 @@ def job_of(file, faces, allowance, folder, waves):
         "compliance": {"rim_thickness_mm": seen["rim_thickness_mm"]},
         "force_N": seen["force_N"],
     }
-    first = {
-        name: seen[name]
-        for name in ("direction", "step_over_share", "feed_mm_s", "approach_feed_mm_s")
-    }
+    first = {name: seen[name] for name in proposal.OF_PASSES}
     return jobs.validate(given), {"along": "direction", **first}
 
 

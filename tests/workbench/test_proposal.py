@@ -24,15 +24,18 @@ PARTS = [("crank_arm.brep", 5), ("pump_cover.brep", 1), ("blade_marine_upper.ige
 TOLERANCE = 0.05  # mm
 
 
-def plate(**keys):
-    """A validated job of a plate 60 x 40 mm without programs."""
-    corners = np.array([[x, y, z] for z in (0, 20) for y in (0, 40) for x in (0, 60)], np.float32)
+def plate(length=60.0, width=40.0, **keys):
+    """A validated job of a plate's top without programs; mm."""
+    corners = [[x, y, z] for z in (0, 20) for y in (0, width) for x in (0, length)]
+    corners = np.array(corners, np.float32)
     faces = [[4, 5, 6], [5, 7, 6], [0, 2, 1], [1, 2, 3], [0, 1, 4], [1, 5, 4]]
     faces += [[2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6], [1, 3, 5], [3, 7, 5]]
     mesh = core.TriangleMesh(corners, np.array(faces, np.uint32))
     shape = core.shape_from_mesh(mesh)
     top = next(
-        face + 1 for face in range(shape.face_count) if abs(shape.face_area(face) - 2400) < 1
+        face + 1
+        for face in range(shape.face_count)
+        if shape.face_area(face) == pytest.approx(length * width, rel=1e-4)
     )
     design = {"brep": shape.write_brep(), "faces": [top]}
     return jobs.validate(
@@ -243,3 +246,13 @@ def make_parts(folder):
     dome, rim = ball.common(knob), Part.makeCylinder(44, 22).cut(knob)
     dome.exportBrep(str(folder / "dome.brep"))
     dome.fuse(rim).exportBrep(str(folder / "rimmed.brep"))
+
+
+def test_a_face_shorter_than_the_shortest_pass_is_ground():
+    job = plate(1.6, 1.2)
+    with pytest.raises(InputError, match="min_length_mm"):
+        raster_path.raster(job, raster_path.validate({"along": "u"}))
+    found = proposal.propose(job)
+    assert found["min_length_mm"] == 1.0 and found["ground_share"] > 0.9
+    settings = {"along": "direction", **{name: found[name] for name in proposal.OF_PASSES}}
+    assert raster_path.raster(job, raster_path.validate(settings))["passes"]

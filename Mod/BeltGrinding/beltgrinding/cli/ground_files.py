@@ -72,13 +72,7 @@ def job_of(arguments, context):
         "compliance": {"rim_thickness_mm": seen["rim_thickness_mm"]},
         "force_N": seen["force_N"],
     }
-    first = {
-        "along": "direction",
-        "direction": seen["direction"],
-        "step_over_share": seen["step_over_share"],
-        "feed_mm_s": seen["feed_mm_s"],
-        "approach_feed_mm_s": seen["approach_feed_mm_s"],
-    }
+    first = {"along": "direction", **{name: seen[name] for name in proposal.OF_PASSES}}
     arguments.messages.print_warnings(seen["notes"])
     return _with_tolerance(jobs.validate(given, Path.cwd()), arguments), first
 

@@ -83,6 +83,7 @@ def values(job: DocumentObject, found: Json) -> dict[DocumentObject, dict[str, A
                 "Along": "direction",
                 "Direction": tuple(found["direction"]),
                 "StepOverShare": found["step_over_share"],
+                "MinLength": found["min_length_mm"],
                 "Feed": found["feed_mm_s"],
                 "ApproachFeed": found["approach_feed_mm_s"],
             }

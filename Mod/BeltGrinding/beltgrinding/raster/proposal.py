@@ -42,8 +42,12 @@ FORCES = (10.0, 60.0)  # N, chosen; a feed out of its range moves it, up to
 FORCE_LEAST, FORCE_MOST = 1.0, 120.0  # N
 APPROACH_FEED = 200.0  # mm/s: the force presses on the way down, too
 FEEDS = (2.0, 150.0)  # mm/s that robots follow evenly
+SHORTEST = 0.05  # mm: passes
 STEP_SHARE = 0.5  # of the contact's width: every place lies under two passes
 ACROSS_WIDTH, ACROSS_SAMPLES = 20, 400_000  # samples across the contact; on the part, at most
+OF_PASSES = (  # what is proposed of a raster
+    *("direction", "step_over_share", "min_length_mm", "feed_mm_s", "approach_feed_mm_s"),
+)
 AXIS = math.cos(math.radians(10.0))  # a direction so near to an axis of the part is that axis
 
 
@@ -51,7 +55,7 @@ def propose(job: Job | Json, context: Context = None) -> dict[str, Any]:
     """Settings for a validated job's design, stock, kind of belt machine and law.
 
     Returns dict(wheel_radius_mm, wheel_width_mm, rim_thickness_mm: of a wheel, contact_spacing_mm, and force_travel_mm: of
-    a belt, force_N, direction (3,), step_over_share, feed_mm_s, spacing_mm, samples (about), allowance_mm: mean of what
+    a belt, force_N, direction (3,), step_over_share, min_length_mm, feed_mm_s, spacing_mm, samples (about), allowance_mm: mean of what
     is to come off, area_mm2, ground_share: of it, that the passes touch, length_mm of them, notes: list of Fact). A
     free belt or a platen is taken as it is. Raises InputError, Cancelled.
     """
@@ -86,7 +90,7 @@ def propose(job: Job | Json, context: Context = None) -> dict[str, Any]:
         along = belt_proposal.direction(job, shape, field, along, look, notes, context)
         settings = _settings(along)
     allowance = _allowance(job, field, notes, context)
-    laid = raster(job, settings, context)
+    laid, settings = _first_passes(job, settings, context)
     force = machine.force_N
     feed = _feed(job, settings, laid, allowance)
     if feed is not None and not FEEDS[0] <= feed <= FEEDS[1]:
@@ -115,6 +119,7 @@ def propose(job: Job | Json, context: Context = None) -> dict[str, Any]:
         "force_N": force,
         "direction": along.tolist(),
         "step_over_share": STEP_SHARE,
+        "min_length_mm": settings["min_length_mm"],
         "feed_mm_s": settings["feed_mm_s"]
         if feed is None or not math.isfinite(feed)
         else _round(feed),
@@ -127,6 +132,18 @@ def propose(job: Job | Json, context: Context = None) -> dict[str, Any]:
         "length_mm": sum(one["length_mm"] for one in laid["passes"]),
         "notes": notes,
     }
+
+
+def _first_passes(job: Job, settings: Json, context: Context) -> tuple[dict[str, Any], Json]:
+    """(passes, settings of them), with ``min_length_mm`` halved until one is long enough. Raises InputError, where
+    no pass can lie."""
+    while True:
+        try:
+            return raster(job, settings, context), settings
+        except InputError as error:
+            if error.code != "raster.no_pass" or settings["min_length_mm"] < SHORTEST:
+                raise
+        settings = {**settings, "min_length_mm": 0.5 * settings["min_length_mm"]}
 
 
 def _settings(direction: Floats) -> dict[str, Any]:

@@ -19,6 +19,11 @@ constexpr double kBarrierPower = 1.5;
 constexpr double kSolvedFor = 10.0;  // times the barrier: so well a barrier's problem is solved
 constexpr double kFirstBarrier = 0.1;
 constexpr double kLoose = 1e-2;  // accuracy before the last reweighting
+// Of half the band, beyond which deviations are let go of, one after the other: nearer and nearer
+// to counting what is out.
+constexpr double kReach[] = {1.0, 0.3, 0.1};
+constexpr int kFurther = 3;      // reweightings by each but the first
+constexpr double kGain = 0.001;  // of the weight, that has to come into the band
 constexpr double kArmijo = 1e-4;
 constexpr int kHalvings = 40;
 constexpr double kRidge =
@@ -41,8 +46,14 @@ class Cost {
           weight_(problem.weight / problem.weight.sum()),
           trust_(Eigen::ArrayXd::Ones(problem.weight.size())) {}
 
-    void reweigh(const Eigen::ArrayXd& e) {
-        trust_ = 1.0 / (1.0 + ((e.abs() - problem_.half).max(0.0) / problem_.half).square());
+    /// r; `reach`: of half the band.
+    void reweigh(const Eigen::ArrayXd& e, double reach) {
+        const Eigen::ArrayXd beyond = (e.abs() - problem_.half).max(0.0);
+        trust_ = 1.0 / (1.0 + (beyond / (reach * problem_.half)).square());
+    }
+    /// Of the weight, in the band.
+    double inside(const Eigen::ArrayXd& e) const {
+        return (weight_ * (e.abs() <= problem_.half).cast<double>()).sum();
     }
     double value(const Eigen::ArrayXd& e) const {
         const Eigen::ArrayXd outer = (e.abs() - inner_).max(0.0);
@@ -131,25 +142,54 @@ class Interior {
         solver_.analyzePattern(first);
     }
 
-    void run() {
-        for (int k = 0; k <= settings_.reweightings; ++k) {
-            if (k > 0) {
-                cost_.reweigh(e_);
-                look();
-            }
-            const bool last = k == settings_.reweightings;
-            solve(last ? settings_.accuracy : std::max(kLoose, settings_.accuracy));
+    /// What `plan_dwell` finds; `factor` and `price` of the variables alone.
+    DwellSolution run() {
+        if (!settle(settings_.reweightings + 1, kReach[0])) {
+            throw InputError("planning.not_solved",
+                             "plan: the feeds were not found in {count} iterations; widen the "
+                             "limits of feed, or raise the smoothing",
+                             {{"count", settings_.iterations}});
         }
+        DwellSolution best = found();
+        if (settings_.reweightings > 0 && (v_.time_cost == 0.0).all()) {
+            double most = cost_.inside(e_);
+            for (const double reach : kReach) {
+                if (reach == kReach[0]) continue;
+                if (!settle(kFurther, reach)) break;
+                if (cost_.inside(e_) <= most + kGain) continue;
+                most = cost_.inside(e_);
+                best = found();
+            }
+        }
+        best.iterations = iterations_;
+        return best;
     }
 
-    const Eigen::ArrayXd& x() const { return x_; }
-    const Eigen::ArrayXd& excess() const { return e_; }
-    Eigen::ArrayXd price() const { return below_ - above_; }
-    double objective() const { return value_; }
-    double residual() const { return error(0.0); }
-    int iterations() const { return iterations_; }
-
   private:
+    /// Solves for weights that follow the deviations; false where the iterations are used up.
+    bool settle(int times, double reach) {
+        for (int k = 0; k < times; ++k) {
+            if (k > 0 || reach != kReach[0]) {
+                cost_.reweigh(e_, reach);
+                look();
+            }
+            const bool last = k + 1 == times;
+            if (!solve(last ? settings_.accuracy : std::max(kLoose, settings_.accuracy))) {
+                return false;
+            }
+        }
+        return true;
+    }
+    DwellSolution found() const {
+        DwellSolution solution;
+        solution.factor = x_;
+        solution.excess = e_;
+        solution.price = below_ - above_;
+        solution.residual = error(0.0);
+        solution.objective = value_;
+        return solution;
+    }
+
     /// What motions that are given otherwise than they were change, mm.
     Eigen::ArrayXd offset(const DwellProblem& p) const {
         Eigen::ArrayXd change = Eigen::ArrayXd::Zero(p.excess.size());
@@ -218,7 +258,7 @@ class Interior {
         return -barrier * ((x - v_.lower).log() + (v_.upper - x).log()).sum();
     }
 
-    void solve(double accuracy) {
+    bool solve(double accuracy) {
         double barrier =
             std::max((below_ * (x_ - v_.lower) + above_ * (v_.upper - x_)).mean() * 0.5,
                      1e-3 * accuracy * scale_);
@@ -229,16 +269,12 @@ class Interior {
                     std::max(least, std::min(kBarrierFall * barrier,
                                              scale_ * std::pow(barrier / scale_, kBarrierPower)));
             }
-            if (iterations_ >= settings_.iterations) {
-                throw InputError("planning.not_solved",
-                                 "plan: the feeds were not found in {count} iterations; widen the "
-                                 "limits of feed, or raise the smoothing",
-                                 {{"count", settings_.iterations}});
-            }
+            if (iterations_ >= settings_.iterations) return false;
             ++iterations_;
             context_.throw_if_cancelled();
             step(barrier);
         }
+        return true;
     }
 
     void step(double barrier) {
@@ -334,8 +370,8 @@ DwellSolution plan_dwell(const DwellProblem& problem, const DwellSettings& setti
     NormalMatrix normal(*problem.influence, static_cast<std::size_t>(problem.excess.size()),
                         variables.motion, variables.chained, context);
     Interior interior(problem, settings, variables, normal, context);
-    interior.run();
-    DwellSolution solution;
+    const DwellSolution found = interior.run();
+    DwellSolution solution = found;
     solution.factor = problem.lower;
     const auto motions = static_cast<Eigen::Index>(problem.influence->motions());
     for (Eigen::Index j = 0; j < motions; ++j) {
@@ -344,16 +380,11 @@ DwellSolution plan_dwell(const DwellProblem& problem, const DwellSettings& setti
         }
     }
     solution.price = Eigen::ArrayXd::Zero(motions);
-    const Eigen::ArrayXd price = interior.price();
     for (std::size_t v = 0; v < variables.motion.size(); ++v) {
         const auto j = static_cast<Eigen::Index>(variables.motion[v]);
-        solution.factor[j] = interior.x()[static_cast<Eigen::Index>(v)];
-        solution.price[j] = price[static_cast<Eigen::Index>(v)];
+        solution.factor[j] = found.factor[static_cast<Eigen::Index>(v)];
+        solution.price[j] = found.price[static_cast<Eigen::Index>(v)];
     }
-    solution.excess = interior.excess();
-    solution.residual = interior.residual();
-    solution.objective = interior.objective();
-    solution.iterations = interior.iterations();
     return solution;
 }
 

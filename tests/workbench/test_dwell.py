@@ -85,3 +85,18 @@ def test_the_cost_of_bands_has_the_least_that_another_solver_finds(seed):
     )
     assert found["objective"] == pytest.approx(1e-4 * other.fun, rel=1e-7)
     assert np.abs(found["factor"] - other.x).max() < 1e-4
+
+
+def test_what_no_motion_can_mend_does_not_keep_the_rest_out_of_the_band():
+    # One motion over two places: the one is left too high, the other is too deep already.
+    a, half = np.full((2, 1), 0.1), np.full(2, 0.05)
+    excess, weight = np.array([0.065, -0.11]), np.array([1.0, 1.0])
+    lower, upper = np.array([0.9]), np.array([2.0])
+
+    def heights(**settings):
+        found = planned(a, excess, half, weight, lower, upper, **settings)
+        assert found["residual"] <= 1e-9
+        return excess - 0.1 * (found["factor"] - 1.0)
+
+    assert heights()[0] > half[0]
+    assert heights(reweightings=6)[0] <= half[0]

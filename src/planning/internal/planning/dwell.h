@@ -52,10 +52,12 @@ struct DwellSolution {
 /// The x of least cost: sum of weight * r * cost(e(x)) over the samples, and the smoothing. cost is
 /// that of a deviation: inner_cost e^2 / 2, and (1 - inner_cost) (|e| - inner_share half)^2 / 2 of
 /// what is beyond, besides `time_cost` x. r = 1 / (1 + (beyond / half)^2), anew by each
-/// reweighting, lets go of what no motion can mend, `beyond` what |e| is beyond the band. For given
-/// r the problem is convex; it is solved by a primal-dual interior-point method (Waechter and
-/// Biegler, Mathematical Programming 106, 2006, without the filter). The same bits on any number of
-/// threads. Throws InputError and Cancelled.
+/// reweighting, lets go of what no motion can mend, `beyond` what |e| is beyond the band. Where no
+/// time is paid, r goes on with a half of a few tenths, and the x with most of the weight in the
+/// band is taken (after Blake and Zisserman, Visual Reconstruction, 1987: from convex to counting).
+/// For given r the problem is convex; it is solved by a primal-dual interior-point method (Waechter
+/// and Biegler, Mathematical Programming 106, 2006, without the filter). The same bits on any
+/// number of threads. Throws InputError and Cancelled.
 DwellSolution plan_dwell(const DwellProblem& problem, const DwellSettings& settings,
                          const RunContext& context = {});
 

@@ -186,7 +186,7 @@ def test_wheels_are_sizes_of_a_series_or_given():
     assert wheels.mounted(platen, found) == ()
 
 
-def tried(machine=None, shares=None, gentler=(0.0, 1.0), **wanted):
+def tried(machine=None, shares=None, gentler=(0.0, 1.0), levels=9, **wanted):
     none = dict.fromkeys(
         ("slowest_feed", "shared", "fringe", "border", "no_room", "no_motion"), 0.0
     )
@@ -196,7 +196,7 @@ def tried(machine=None, shares=None, gentler=(0.0, 1.0), **wanted):
     feeds = np.ones(3), np.ones(3)
     return by_rules.Tried(
         *("first", machine, settings, 0.5, feeds, {**none, **(shares or {})}, 0.2),
-        *(6.0, 8.0, 3.0, 40, 10.0, 0.0, 1, gentler, up),
+        *(6.0, 8.0, 3.0, levels, 40, 10.0, 0.0, 1, gentler, up),
         *(np.zeros((0, 3)), 0.0, 0.0),
     )
 
@@ -234,6 +234,19 @@ def test_less_force_at_borders_is_tried_where_the_program_sets_forces():
         tried({**device, "control": "position"}, left),
     ):
         assert "border_force" not in told(one)
+
+
+def test_one_pass_less_is_tried_where_there_are_few():
+    def wider(**given):
+        moves = by_rules.others(tried(**given))
+        return [one[2]["step_over_mm"] for _, one in moves if one[2]["step_over_mm"] > 3.0]
+
+    border = {"border": 0.05}
+    (two,) = wider(shares=border, levels=2)
+    assert 2 * 3.0 < two < 2.01 * 3.0  # 2 passes cover at most that
+    (three,) = wider(shares=border, levels=3)
+    assert 1.5 * 3.0 < three < 1.51 * 3.0
+    assert wider(shares=border, levels=1) == wider(shares=border) == wider(levels=2) == []
 
 
 def test_less_force_is_tried_where_it_is_set_by_hand():

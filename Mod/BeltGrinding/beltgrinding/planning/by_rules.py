@@ -29,11 +29,13 @@ from .step import force_exponent
 
 TRIES = 7  # passes, at most
 ROUNDS = 3  # of a rough plan: one says too little where the force is far off
-SAMPLES = 6_000  # of a rough plan, at most, about
+SAMPLES = 16_000  # of a rough plan, at most, about
 GAIN = 0.003  # of the area, for other passes to be better
 MATTERS = 0.01  # of the area: a reason for less is let be
 CLOSER = 0.7  # step-over against the one before
 CLOSEST = 0.2  # of the contact's width
+FEW = 4  # passes beside each other, of which one less may be enough
+FEWER = 1.001  # of the step-over that they need then
 MOST_POSES = 20_000
 SMOOTHER = 2.0  # times the length over which the wheel turns, where the robot is slow to turn it and cuts too deep
 MOST_SMOOTHING = 4.0  # of the contact's length
@@ -68,6 +70,7 @@ class Tried(NamedTuple):
     width_mm: float | None  # of the contact
     length_mm: float
     step_over_mm: float
+    levels: int  # passes beside each other
     poses: int
     process_time_s: float
     undone: float  # of the area, not done even at the least feed and the greatest force
@@ -259,6 +262,7 @@ def _seen(
         width_mm=laid["contact_width_mm"],
         length_mm=laid["contact_length_mm"],
         step_over_mm=laid["step_over_mm"],
+        levels=len({one["level"] for one in laid["passes"]}),
         poses=len(laid["frames"]),
         process_time_s=best["process_time_s"],
         undone=undone,
@@ -345,6 +349,10 @@ def others(one: Tried) -> list[tuple[float, Move]]:
     if between > MATTERS and one.poses / CLOSER <= MOST_POSES:
         if one.width_mm is None or closer >= CLOSEST * one.width_mm:
             add(shares["shared"] + shares["fringe"], "step_over", step_over_mm=closer)
+    if between > MATTERS and 1 < one.levels <= FEW:
+        # A wide wheel leaves marks beside its sides: one pass less has fewer.
+        wider = FEWER * one.step_over_mm * one.levels / (one.levels - 1)
+        add(between, "step_over", step_over_mm=wider)
     if shares["border"] > MATTERS:
         for run_out in (0.25 * one.length_mm, -0.25 * one.length_mm):
             farther = round(wanted["run_out_mm"] + run_out, 3)

@@ -3,6 +3,7 @@ by rules, from the reasons for what stays out of tolerance, or by a search for w
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -20,7 +21,7 @@ from .limits import GENTLER
 GENTLE = 0.2  # of the force: the least where none is given, so that borders and ends of passes can be spared
 FINAL = 0.5  # of the time: the last plan
 SEARCHED = 0.9  # of the time: the search
-POLISHED = 2  # rounds of the plan that begins with the feeds of a search
+POLISHED = 2  # rounds, at least, of the plan that begins with the feeds of a search
 
 
 class Ground(NamedTuple):
@@ -52,7 +53,7 @@ def grind(
 
     Returns a ``Ground``. Raises InputError, Cancelled.
     """
-    context = context or core.RunContext()
+    context, begun = context or core.RunContext(), time.monotonic()
     planned = with_forces(typed(job), rounds.validate(settings or {}))
     data, settings = rounds.in_time(job, planned)
     first = raster_path.validate(raster_settings or {})
@@ -64,15 +65,22 @@ def grind(
     data = rounds.settled(data, context)
     part = context.part(0.0, SEARCHED)
     found = searches.find(data, first, settings, search, zones, told, stop, part)
-    left = settings  # whose rounds are also those of a shortest time
-    if settings["goal"] != "time":
-        left = {**settings, "rounds": min(settings["rounds"], POLISHED)}
     rest = context.part(SEARCHED, 1.0)
-    ground = _planned(data, found.best, left, rest, told, zones, found.rows)
-    plan = ground.plan._replace(
-        settings={**ground.plan.settings, "rounds": settings["rounds"]},
-    )
-    return ground._replace(plan=plan, search=found.report())
+    rounds_told = 0
+
+    def heard(row: dict[str, Any]) -> None:
+        nonlocal rounds_told
+        rounds_told += 1
+        if told is not None:
+            told(row)
+
+    def over() -> bool:
+        """Whether it is polished: the budget is spent, or who asked wants no more."""
+        late = time.monotonic() - begun > search.budget_s or (stop is not None and stop())
+        return late and rounds_told >= POLISHED and settings["goal"] != "time"
+
+    ground = _planned(data, found.best, settings, rest, heard, zones, found.rows, over)
+    return ground._replace(search=found.report())
 
 
 def _planned(
@@ -83,6 +91,7 @@ def _planned(
     told: Callable[[dict[str, Any]], object] | None,
     zones: Zones | None,
     tried: list[dict[str, Any]],
+    over: Callable[[], bool] | None = None,
 ) -> Ground:
     """The plan of passes that were tried, from their feeds on."""
     wanted, force = best.wanted, made(BeltMachine, best.machine).force_N
@@ -91,7 +100,7 @@ def _planned(
     data = by_rules.with_machine(data, best.machine, wanted, settings)
     laid = by_rules.lay(data, wanted, settings, context.part(0.0, 0.1), zones)
     path = by_rules.with_path(data, laid)
-    plan = rounds.plan(path, settings, context.part(0.1, 1.0), told, start=best.start)
+    plan = rounds.plan(path, settings, context.part(0.1, 1.0), told, start=best.start, over=over)
     return Ground(wanted, laid, plan, tried)
 
 

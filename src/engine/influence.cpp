@@ -8,6 +8,11 @@ namespace beltgrinding {
 
 void Influence::append(const Influence& next) {
     const std::size_t before = sample.size();
+    if (!feedback.empty() || !next.feedback.empty()) {
+        feedback.resize(motions(), 0.0F);
+        feedback.insert(feedback.end(), next.feedback.begin(), next.feedback.end());
+        feedback.resize(motions() + next.motions(), 0.0F);
+    }
     first.reserve(first.size() + next.motions());
     for (std::size_t k = 1; k < next.first.size(); ++k) first.push_back(before + next.first[k]);
     sample.insert(sample.end(), next.sample.begin(), next.sample.end());

@@ -276,10 +276,18 @@ Pressing::State Pressing::press_force(const SampleBlocks& blocks, double force) 
 }
 
 std::optional<Pressing::Pressed> Pressing::with_force(double force) {
+    return pressed_otherwise(gap_, force);
+}
+
+std::optional<Pressing::Pressed> Pressing::with_gap(const Eigen::ArrayXd& change) {
+    return pressed_otherwise(gap_ + change, solution_.force);
+}
+
+std::optional<Pressing::Pressed> Pressing::pressed_otherwise(Eigen::ArrayXd gap, double force) {
     if (!process_.force_control || state_ != State::kPressed || !contact_) return std::nullopt;
     const Stopwatch watch(times_.contact);
     ContactProblem problem;
-    problem.gap = gap_;
+    problem.gap = std::move(gap);
     problem.drop = profile_drop(tool_.wheel, map_.grid());
     problem.recession = recession_;
     problem.coverage = map_.coverage();

@@ -36,13 +36,29 @@ void bind_planning(py::module_& m) {
             },
             py::arg("group"), py::arg("count"),
             "That of groups of motions that change together; group (motions,): each one's number.")
+        .def(
+            "in_the_end",
+            [](const Influence& i, const Influence& removed, const Array<float>& area,
+               const Array<std::uint32_t>& group, std::size_t count, const RunContext* context) {
+                return i.in_the_end(removed, {area.data(), static_cast<std::size_t>(area.size())},
+                                    {group.data(), static_cast<std::size_t>(group.size())}, count,
+                                    context != nullptr ? *context : RunContext{});
+            },
+            py::arg("removed"), py::arg("area"), py::arg("group"), py::arg("count"),
+            py::arg("context") = nullptr, py::call_guard<py::gil_scoped_release>(),
+            "What is left of it after all motions, by groups as of `grouped`: later motions press "
+            "less where earlier ones went deeper. removed: what the same motions removed, with its "
+            "feedback; area (samples,) mm2. Raises InputError, Cancelled.")
         .def("__len__", &Influence::motions)
         .def_property_readonly(
             "first", [](const Influence& i) { return own(std::vector<std::size_t>(i.first)); })
         .def_property_readonly(
             "sample", [](const Influence& i) { return own(std::vector<std::uint32_t>(i.sample)); })
         .def_property_readonly("depth",
-                               [](const Influence& i) { return own(std::vector<float>(i.depth)); });
+                               [](const Influence& i) { return own(std::vector<float>(i.depth)); })
+        .def_property_readonly(
+            "feedback", [](const Influence& i) { return own(std::vector<float>(i.feedback)); },
+            "(motions,) 1/mm, or none: how a motion answers what it finds lower.");
     m.def(
         "plan_dwell",
         [](const Influence& influence, const Eigen::ArrayXd& excess, const Eigen::ArrayXd& half,

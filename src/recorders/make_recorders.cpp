@@ -35,7 +35,7 @@ Recorders make_recorders(const SampleBlocks& blocks, const ToolPath& path, const
     if (options.finish.wanted && !rigid)
         all.add(std::make_unique<FinishRecorder>(blocks, options.finish, process.belt_speed,
                                                  options.resolution.max_travel));
-    if (outputs.influence) all.add(std::make_unique<InfluenceRecorder>(blocks, motions));
+    if (outputs.influence) all.add(std::make_unique<InfluenceRecorder>(blocks, motions, law));
     if (outputs.cell_errors && !rigid) all.add(std::make_unique<ResolutionRecorder>(blocks));
     all.add(std::make_unique<ShiftRecorder>(blocks, outputs.shifted_laws, process));
     if (outputs.force_influence)

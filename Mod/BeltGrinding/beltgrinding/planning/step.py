@@ -70,7 +70,13 @@ class _Seen:
     """What a simulation of a job says for the next round."""
 
     def __init__(
-        self, commands: Commands, result: Result, feeds: Floats, factors: Floats, settings: Json
+        self,
+        commands: Commands,
+        result: Result,
+        feeds: Floats,
+        factors: Floats,
+        settings: Json,
+        context: core.RunContext,
     ) -> None:
         self.commands, self.result, self.settings = commands, result, settings
         self.feeds, self.factors = feeds, factors
@@ -80,7 +86,9 @@ class _Seen:
         # mm from the middle of the band
         self.deviation = np.asarray(result.field.height, dtype=float) - 0.5 * (lower + upper)
         self.weight = sure.seen_areas(result.field)
-        self.influence = known(result.influence).grouped(commands.group, len(commands))
+        self._context = context
+        self._by_force: core.Influence | None = None
+        self.influence = self._in_the_end(known(result.influence))
         self.power = 1.0 - feed_exponent(result.job)  # removed depth goes with the time to this
         self.alpha = force_exponent(result.job)
         self.least, greatest = commands.force_range
@@ -101,7 +109,15 @@ class _Seen:
 
     def by_force(self) -> core.Influence:
         """(commands,) core.Influence, mm per relative change of force."""
-        return known(self.result.force_influence).grouped(self.commands.group, len(self.commands))
+        if self._by_force is None:
+            self._by_force = self._in_the_end(known(self.result.force_influence))
+        return self._by_force
+
+    def _in_the_end(self, influence: core.Influence) -> core.Influence:
+        """(commands,) core.Influence, mm: what later motions leave of it."""
+        removed, areas = known(self.result.influence), np.asarray(self.result.field.areas)
+        group, count = self.commands.group, len(self.commands)
+        return influence.in_the_end(removed, areas, group, count, self._context.part(0.0, 0.0))
 
     def within(self, low: Floats, high: Floats, most: float) -> tuple[Floats, Floats]:
         """Ranges (commands,) twice of a factor, by no more than the factor ``most`` from 1; 1 of what may not change."""
@@ -130,7 +146,7 @@ def following(
     what a round may change, on a logarithmic scale.
     """
     begun = time.perf_counter()
-    seen = _Seen(commands, result, feeds, factors, settings)
+    seen = _Seen(commands, result, feeds, factors, settings, context)
     by_hand = commands.by_hand and commands.presses()
     if by_hand:
         forces = False

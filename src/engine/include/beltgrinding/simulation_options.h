@@ -221,6 +221,10 @@ struct Influence {
     std::vector<std::size_t> first = {0};  ///< (motions + 1), where a motion's entries begin
     std::vector<std::uint32_t> sample;     ///< rising within a motion
     std::vector<float> depth;              ///< mm, not 0
+    /// (motions) 1/mm, or empty: not known. Where a motion that removes `d` finds the surface lower
+    /// by u than before, against what it finds on the whole, it removes `feedback` d u less: the
+    /// wheel presses less there. 0: not known, or the wheel does not follow a force.
+    std::vector<float> feedback;
 
     /// How many there are, those that removed nothing among them.
     std::size_t motions() const { return first.size() - 1; }
@@ -229,6 +233,16 @@ struct Influence {
     /// That of groups of motions, which are changed together: `group` has the number of each
     /// motion's, below `count`. Throws InputError where the numbers do not fit.
     Influence grouped(std::span<const std::uint32_t> group, std::size_t count) const;
+    /// What is left of that in the end, by groups as of `grouped`: at first order, how much lower
+    /// the surface is after all motions if a group's motions take longer, or press more. What is
+    /// ground deeper is pressed less by later motions, and the rest of their contact more: the
+    /// volume stays. `removed`: what the same motions removed, with its `feedback`; `area`
+    /// (samples), mm2. Entries below a hundredth of a group's greatest are left out, their volume
+    /// is not. The same bits on any number of threads. Throws InputError where the numbers do not
+    /// fit, and Cancelled.
+    Influence in_the_end(const Influence& removed, std::span<const float> area,
+                         std::span<const std::uint32_t> group, std::size_t count,
+                         const RunContext& context = {}) const;
 };
 
 /// What a simulation gives besides the field.

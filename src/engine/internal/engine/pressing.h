@@ -71,6 +71,8 @@ class Pressing final : public Keeps<Latest<PressingMemory>> {
     /// As it stands now, with another force, on the surface as it was mapped last; the wheel stays.
     /// Empty where the force is not what was asked for.
     std::optional<Pressed> with_force(double force);
+    /// The same under the same force, with the gap changed by so many mm, by cell.
+    std::optional<Pressed> with_gap(const Eigen::ArrayXd& change);
     /// From here on `hold` is about this programmed pose.
     void stand(const Frame& work_from_contact) {
         programmed_ = work_from_contact;
@@ -156,6 +158,8 @@ class Pressing final : public Keeps<Latest<PressingMemory>> {
     Wanted within_limits(double place) const;
     /// Solves with the wheel held rigidly where it stands. False where it does not touch.
     bool press_held(const SampleBlocks& blocks);
+    /// As of `with_force` and `with_gap`.
+    std::optional<Pressed> pressed_otherwise(Eigen::ArrayXd gap, double force);
     /// The wheel stands at its pose again and presses on nothing.
     State let_go();
 

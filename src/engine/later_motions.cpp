@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kGroups = 32;  // in a block of work
 constexpr double kFaint = 0.02;      // of a group's greatest: what a later motion makes nothing of
-constexpr double kKept = 0.01;       // the same of what is handed over
+constexpr double kKept = 0.03;       // the same of what is handed over
 // Of the volume, by which it may be off for what is left out to be made good.
 constexpr double kLeftOut = 0.25;
 

@@ -91,9 +91,9 @@ def test_a_round_that_is_worse_is_taken_back(job, monkeypatch):  # noqa: F811
     """The next one starts from the best, and goes half as far."""
     seen, following = [], planning.rounds.following
 
-    def spoilt(commands, result, feeds, factors, *rest, **given):
-        seen.append((feeds, given["reach"]))
-        new, force, told = following(commands, result, feeds, factors, *rest, **given)
+    def spoilt(what, **given):
+        seen.append((what.feeds, given["reach"]))
+        new, force, told = following(what, **given)
         return (0.3 * new if len(seen) == 2 else new), force, told
 
     monkeypatch.setattr(planning.rounds, "following", spoilt)

@@ -66,10 +66,12 @@ def _dearest(trials: Trials, best: Trial, wanted: float) -> step.Step | None:
     """The step (as ``step.following`` gives it) for the greatest cost of time with which the prediction keeps the
     share; None if none does."""
     low, high, dearest = LEAST, MOST, None
-    now = (trials.commands, best.result, best.feeds, best.factors, trials.settings, trials.context)
+    seen = step.Seen(
+        trials.commands, best.result, best.feeds, best.factors, trials.settings, trials.context
+    )
     for _ in range(SEARCHES):
         cost = (low * high) ** 0.5
-        found = step.following(*now, cost)
+        found = step.following(seen, cost)
         if found[2]["predicted_in_tolerance"] >= wanted:
             low, dearest = cost, found
         else:

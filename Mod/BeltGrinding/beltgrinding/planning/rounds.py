@@ -25,7 +25,7 @@ from ..job.workpiece import check_faces, read_design
 from ..simulation import convergence, run as runs
 from . import least_time, levels, limits, reasons, sure
 from .commands import Commands
-from .step import SAME, feed_exponent, figures, following
+from .step import SAME, Seen, feed_exponent, figures, following
 from .trials import Trials
 
 if TYPE_CHECKING:
@@ -238,16 +238,13 @@ def _by_rounds(
         if number == 0 and start is not None and not ends:
             feeds, factors = start
         elif not ends:
-            feeds, factors, found = following(
-                commands,
-                best.result,
-                best.feeds,
-                best.factors,
-                settings,
-                context,
-                forces=with_forces and number >= FEEDS_ONLY,
-                reach=reach,
-            )
+            both = with_forces and number >= FEEDS_ONLY
+            seen = Seen(commands, best.result, best.feeds, best.factors, settings, context)
+            feeds, factors, found = following(seen, forces=both, reach=reach)
+            # With forces, which the law is less linear in, a round that brought nothing must say so as well.
+            asked = not with_forces or (both and stalled > 0)
+            ends = asked and not _promises(found, best.figures, settings)
+            found = {} if ends else found
         trials.tell(trial, **found)
         if ends:
             break
@@ -315,6 +312,16 @@ def _gains(one: Json, best: Json, settings: Json) -> bool:
     """Whether a round leads on: enough comes into tolerance, or all comes nearer to it."""
     gain = sure.gain(one, best, settings)
     return gain >= settings["least_gain"] or one["rms_mm"] < NEARER * best["rms_mm"]
+
+
+def _promises(found: Json, best: Json, settings: Json) -> bool:
+    """Whether the round that was planned is predicted to lead on, as ``_gains``. Not asked where a probability or a limit of
+    pressure counts, too."""
+    if settings["probability"] or best.get("over_limit", 0.0) > PEAKS:
+        return True
+    gain = found["predicted_in_tolerance"] - sure.share(best)
+    nearer: bool = found["predicted_rms_mm"] < NEARER * best["rms_mm"]
+    return gain >= settings["least_gain"] or nearer
 
 
 def _refuse_without_stock(result: Result) -> None:

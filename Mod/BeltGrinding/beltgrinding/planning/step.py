@@ -66,7 +66,7 @@ def figures(result: Result, settings: Json) -> dict[str, Any]:
     return {**found, **sure.figures(result, settings), **limits.figures(result, settings)}
 
 
-class _Seen:
+class Seen:
     """What a simulation of a job says for the next round."""
 
     def __init__(
@@ -86,8 +86,8 @@ class _Seen:
         # mm from the middle of the band
         self.deviation = np.asarray(result.field.height, dtype=float) - 0.5 * (lower + upper)
         self.weight = sure.seen_areas(result.field)
-        self._context = context
-        self._by_force: core.Influence | None = None
+        self.context = context
+        self.removed = known(result.influence).grouped(commands.group, len(commands))
         self.influence = self._in_the_end(known(result.influence))
         self.power = 1.0 - feed_exponent(result.job)  # removed depth goes with the time to this
         self.alpha = force_exponent(result.job)
@@ -95,29 +95,30 @@ class _Seen:
         most = limits.greatest_factors(result, commands, factors, settings)
         self.greatest = np.maximum(np.minimum(greatest, most), self.least)
         self._thinned = Thinned(result.field, result.job, self.weight)
-        self._influence = self.thinned(self.influence)  # the solver's
-        self.moved = (np.diff(self._influence.first.astype(int)) > 0) & ~commands.kept
+        moves = np.diff(self.thinned(self.removed).first.astype(int)) > 0
+        self.moved = moves & ~commands.kept
 
-    def solver(self) -> tuple[core.Influence, Floats, Floats, Floats]:
-        """(influence, mm from the middle of the band, half the band that is aimed at mm, weights mm2) for the solver."""
+    def solver(self, influence: core.Influence) -> tuple[core.Influence, Floats, Floats, Floats]:
+        """(thinned influence, mm from the middle of the band, half the band that is aimed at mm, weights mm2) for the solver."""
         thinned, band = self._thinned, sure.band(self.result, self.settings, self.half)
         kept = thinned.kept
-        return self._influence, self.deviation[kept], band[kept], thinned.weight
+        return self.thinned(influence), self.deviation[kept], band[kept], thinned.weight
 
     def thinned(self, influence: core.Influence) -> core.Influence:
         return self._thinned.influence(influence, len(self.half))
 
     def by_force(self) -> core.Influence:
-        """(commands,) core.Influence, mm per relative change of force."""
-        if self._by_force is None:
-            self._by_force = self._in_the_end(known(self.result.force_influence))
-        return self._by_force
+        """(commands,) core.Influence, mm per relative change of force: what each would remove more itself."""
+        return known(self.result.force_influence).grouped(self.commands.group, len(self.commands))
+
+    def by_force_in_the_end(self) -> core.Influence:
+        """The same, as far as later motions leave it."""
+        return self._in_the_end(known(self.result.force_influence))
 
     def _in_the_end(self, influence: core.Influence) -> core.Influence:
-        """(commands,) core.Influence, mm: what later motions leave of it."""
         removed, areas = known(self.result.influence), np.asarray(self.result.field.areas)
         group, count = self.commands.group, len(self.commands)
-        return influence.in_the_end(removed, areas, group, count, self._context.part(0.0, 0.0))
+        return influence.in_the_end(removed, areas, group, count, self.context.part(0.0, 0.0))
 
     def within(self, low: Floats, high: Floats, most: float) -> tuple[Floats, Floats]:
         """Ranges (commands,) twice of a factor, by no more than the factor ``most`` from 1; 1 of what may not change."""
@@ -128,12 +129,7 @@ class _Seen:
 
 
 def following(
-    commands: Commands,
-    result: Result,
-    feeds: Floats,
-    factors: Floats,
-    settings: Json,
-    context: core.RunContext,
+    seen: Seen,
     time_cost: float | None = None,
     forces: bool = False,
     reach: float = 1.0,
@@ -146,7 +142,8 @@ def following(
     what a round may change, on a logarithmic scale.
     """
     begun = time.perf_counter()
-    seen = _Seen(commands, result, feeds, factors, settings, context)
+    commands, settings, context = seen.commands, seen.settings, seen.context
+    feeds, factors = seen.feeds, seen.factors
     by_hand = commands.by_hand and commands.presses()
     if by_hand:
         forces = False
@@ -161,7 +158,7 @@ def following(
         new, force, found = _feeds_first(seen, time_cost, reach, context)
     force[abs(force - 1.0) <= SAME] = 1.0
     new = np.where(seen.moved, new, feeds)
-    matter = with_force.energy(seen.influence, seen.weight)
+    matter = with_force.energy(seen.removed, seen.weight)
     new = limits.feeds(commands, new, matter, settings)
     if not by_hand:
         force = np.where(seen.moved, force, factors)
@@ -170,19 +167,20 @@ def following(
     longer = seen.pace.longer(new) ** seen.power
     if forces:
         excess = seen.deviation - _removed(seen.influence, longer - 1.0, len(seen.half))
-        excess -= _removed(seen.by_force(), force / factors - 1.0, len(seen.half))
+        excess -= _removed(seen.by_force_in_the_end(), force / factors - 1.0, len(seen.half))
     else:
         done = longer * (force / factors) ** seen.alpha
         excess = seen.deviation - _removed(seen.influence, done - 1.0, len(seen.half))
     inside = abs(excess) <= seen.half
-    height = np.asarray(result.field.height, dtype=float) - seen.deviation + excess
-    predicted = sure.figures(result, settings, height)
+    height = np.asarray(seen.result.field.height, dtype=float) - seen.deviation + excess
+    predicted = sure.figures(seen.result, settings, height)
     share = float(seen.weight[inside].sum() / seen.weight.sum())
     return (
         new,
         force,
         {
             "predicted_in_tolerance": sure.share({"in_tolerance": share, **predicted}),
+            "predicted_rms_mm": float(np.sqrt(np.average(height**2, weights=seen.weight))),
             "residual": found["residual"],
             "iterations": found["iterations"],
             "planning_seconds": time.perf_counter() - begun,
@@ -191,7 +189,7 @@ def following(
 
 
 def _feeds_first(
-    seen: _Seen, time_cost: float | None, reach: float, context: core.RunContext
+    seen: Seen, time_cost: float | None, reach: float, context: core.RunContext
 ) -> Step:
     """(feeds mm/s, factors on forces (commands,), what the solver tells): the feed does what it can, from the job's own
     force or, in a hurry, from the greatest; the force the rest, as much more as the law has it.
@@ -208,7 +206,7 @@ def _feeds_first(
         solver.update(HURRIED)
         costs = time_cost * pace.now
     found = core.plan_dwell(
-        *seen.solver(),
+        *seen.solver(seen.influence),
         fastest,
         slowest,
         1.0 / seen.feeds,
@@ -224,7 +222,7 @@ def _feeds_first(
     return new, np.clip(factors * rest ** (1.0 / alpha), seen.least, seen.greatest), found
 
 
-def _feeds_and_one_force(seen: _Seen, reach: float, context: core.RunContext) -> Step:
+def _feeds_and_one_force(seen: Seen, reach: float, context: core.RunContext) -> Step:
     """As ``_feeds_first``, with the one force for all that is set by hand: of several, the one with which most of the area
     is predicted to be in tolerance."""
     settings, pace = seen.settings, seen.pace
@@ -234,7 +232,7 @@ def _feeds_and_one_force(seen: _Seen, reach: float, context: core.RunContext) ->
     low, high = max(least, now / most), min(greatest, now * most)
     tried = {now, *np.geomspace(min(low, high), high, HAND_TRIES).tolist()}
     solver = {"smoothing": settings["smoothing"], "accuracy": with_force.ACCURACY}
-    influence, deviation, half, weight = seen.solver()
+    influence, deviation, half, weight = seen.solver(seen.influence)
     tries: list[tuple[float, float, Floats, dict[str, Any]]] = []
     for factor in sorted(one for one in tried if least - SAME <= one <= greatest + SAME):
         stronger = (factor / now) ** seen.alpha
@@ -260,13 +258,14 @@ def _feeds_and_one_force(seen: _Seen, reach: float, context: core.RunContext) ->
     return new, np.full(len(new), factor), found
 
 
-def _feeds_and_forces(seen: _Seen, reach: float, context: core.RunContext) -> Step:
+def _feeds_and_forces(seen: Seen, reach: float, context: core.RunContext) -> Step:
     """As ``_feeds_first``, both at once."""
     settings, feeds, factors = seen.settings, seen.feeds, seen.factors
     slowest, fastest = seen.pace.longest**seen.power, seen.pace.shortest**seen.power
     most = min(settings["most_change"], with_force.MOST_TIME) ** reach
     strongest = min(settings["most_change"], with_force.MOST_FORCE) ** reach
-    influence, deviation, half, weight = seen.solver()
+    # Of these, what each removes itself: for both at once the wider columns take several times as long, and lead no further.
+    influence, deviation, half, weight = seen.solver(seen.removed)
     longer, stronger, found = with_force.solve(
         influence,
         seen.thinned(seen.by_force()),

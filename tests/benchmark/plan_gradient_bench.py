@@ -3,7 +3,8 @@
 tools/bench plan_gradient; `python plan_gradient_bench.py [--motions N]` does the same. For some motions of the marine
 blade's raster, feed and force are changed by 3 % both ways and the job simulated anew; what that changes, sample by
 sample where the motion removes most, is compared with what the planner takes it for: A for the time, the
-simulation's own influence of the force. Printed: the error's median and 95th percentile, and that of all a motion removes together.
+simulation's own influence of the force, both as later motions leave them; `alone` is what the motion does itself. Printed:
+the error's median and 95th percentile, and that of all a motion removes together.
 """
 
 import argparse
@@ -33,10 +34,10 @@ def main():
     commands = Commands(job, rounds.validate({"force_max_N": 60.0, "timing": "job"}))
     feeds, ones = commands.feed(), np.ones(len(commands))
     run = runs.run(job, influence=True, forces=True)
-    told = {
-        "feed": run.influence.grouped(commands.group, len(commands)),
-        "force": run.force_influence.grouped(commands.group, len(commands)),
-    }
+    groups, areas = (commands.group, len(commands)), np.asarray(run.field.areas)
+    both = {"feed": run.influence, "force": run.force_influence}
+    told = {what: one.in_the_end(run.influence, areas, *groups) for what, one in both.items()}
+    alone = {what: one.grouped(*groups) for what, one in both.items()}
     random = np.random.default_rng(0)
     busy = np.flatnonzero(np.diff(told["feed"].first.astype(int)) > LEAST)
 
@@ -44,6 +45,7 @@ def main():
         return np.asarray(runs.run(commands.with_feeds(feeds, factors)).field.height, dtype=float)
 
     errors = {"feed": ([], []), "force": ([], [])}
+    before = {"feed": ([], []), "force": ([], [])}
     for k in random.choice(busy, min(arguments.motions, len(busy)), replace=False):
         for what, (single, whole) in errors.items():
             first = told[what].first.astype(int)
@@ -56,10 +58,18 @@ def main():
                 other = (feeds if what == "feed" else ones).copy()
                 other[k] = other[k] / change if what == "feed" else other[k] * change
                 ends.append(height(other, ones) if what == "feed" else height(feeds, other))
-            found = (ends[1] - ends[0])[samples] / (2.0 * CHANGE)
-            single += (found[some] / taken[some] - 1.0).tolist()
-            whole.append(found.sum() / taken.sum() - 1.0)
-    for what, (single, whole) in errors.items():
+            found = (ends[1] - ends[0]) / (2.0 * CHANGE)
+            single += (taken[some] / found[samples[some]] - 1.0).tolist()
+            whole.append(taken.sum() / found[samples].sum() - 1.0)
+            column = np.zeros(len(found))
+            first = alone[what].first.astype(int)
+            mine = slice(first[k], first[k + 1])
+            column[alone[what].sample[mine]] = alone[what].depth[mine]
+            before[what][0].extend((column / found - 1.0)[samples[some]].tolist())
+            before[what][1].append(column.sum() / found[column != 0.0].sum() - 1.0)
+    rows = [(what, *one) for what, one in errors.items()]
+    rows += [(f"{what} alone", *one) for what, one in before.items()]
+    for what, single, whole in rows:
         away = np.abs(single)
         print(
             f"plan_gradient: {what}: {len(single)} entries off by {100 * np.median(away):.0f} % (median), "

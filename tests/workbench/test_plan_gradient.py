@@ -14,8 +14,8 @@ CHANGE = 0.03
 APART = 22.0  # mm: what motions do that far from each other does not meet
 OF_MOST = 0.3  # of a column's greatest entry: where its entries are looked at one by one
 BOUNDS = {  # median of single entries; all of a column, over the part
-    "feed": (0.09, 0.16),
-    "force": (0.07, 0.16),
+    "feed": (0.1, 0.2),
+    "force": (0.1, 0.2),
 }
 
 

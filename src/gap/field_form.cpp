@@ -14,6 +14,27 @@ constexpr double kGraded = 0.001;   // of the samples away from borders: fewer s
 constexpr double kDenser = 0.6;     // of the field's spacing: where curvature asks for more samples
 constexpr double kStraight = 1e-6;  // less: a spike, which has no way along
 
+/// Twice the area times the middle, and twice the area, of what of a triangle is a corner's, from
+/// there: what is nearest to it, in an obtuse triangle up to the middles of its sides. Two
+/// triangles of a rectangle give the same whichever its diagonal. `one`, `other`: the ways to the
+/// other corners, mm.
+std::pair<Vec3, double> corner_part(const Vec3& one, const Vec3& other) {
+    const double a = one.squaredNorm(), b = other.squaredNorm(), dot = one.dot(other);
+    Vec3 middle;  // of the circle through the corners, but in an obtuse triangle
+    if (dot <= 0.0)
+        middle = 0.5 * (one + other);
+    else if (dot >= b)
+        middle = 0.5 * one;
+    else if (dot >= a)
+        middle = 0.5 * other;
+    else
+        middle = 0.5 / (a * b - dot * dot) * (b * (a - dot) * one + a * (b - dot) * other);
+    const double by_one = 0.5 * one.cross(middle).norm();
+    const double by_other = 0.5 * other.cross(middle).norm();
+    const Vec3 sum = by_one * (0.5 * one + middle) + by_other * (0.5 * other + middle);
+    return {sum / 3.0, by_one + by_other};
+}
+
 }  // namespace
 
 void FieldForm::look(const SampleBlocks& blocks, std::optional<double> lowest_step) {
@@ -32,6 +53,7 @@ void FieldForm::find_borders(const HeightField& field) {
         if ((field.flags[k] & kOnBoundary) != 0) borders_.push_back({k, Vec3f::Zero(), 0.0f});
     if (borders_.empty()) return;
     std::vector<double> areas(borders_.size(), 0.0);
+    std::vector<Vec3> moments(borders_.size(), Vec3::Zero());
     const auto number = [&](std::uint32_t sample) {
         const auto by_sample = [](const Border& a, std::uint32_t k) { return a.sample < k; };
         return static_cast<std::size_t>(
@@ -43,12 +65,11 @@ void FieldForm::find_borders(const HeightField& field) {
         for (std::size_t corner = 0; corner < 3; ++corner) {
             const std::uint32_t a = triangle[corner];
             if ((field.flags[a] & kOnBoundary) == 0) continue;
-            // Of a triangle, what is nearest to a corner has its middle 7/36 of both sides away.
             const Vec3 one = field.point[triangle[(corner + 1) % 3]] - field.point[a];
             const Vec3 other = field.point[triangle[(corner + 2) % 3]] - field.point[a];
-            const double area = one.cross(other).norm();
+            const auto [moment, area] = corner_part(one, other);
             const std::size_t k = number(a);
-            borders_[k].middle += (7.0 / 36.0 * area * (one + other)).cast<float>();
+            moments[k] += moment;
             areas[k] += area;
             const std::uint32_t next = triangle[(corner + 1) % 3];
             if ((field.flags[next] & kOnBoundary) != 0) ways.emplace_back(a, next);
@@ -74,7 +95,7 @@ void FieldForm::find_borders(const HeightField& field) {
         const double apart = neighbours[k] > 0 ? borders_[k].along / neighbours[k] : 0.0;
         borders_[k].along = apart < kDenser * field.spacing ? static_cast<float>(apart) : 0.0f;
         if (areas[k] <= 0.0) continue;
-        Vec3 middle = borders_[k].middle.cast<double>() / areas[k];
+        Vec3 middle = moments[k] / areas[k];
         const double square = along[k].squaredNorm();
         if (square > kStraight) middle -= along[k].dot(middle) / square * along[k];
         borders_[k].middle = middle.cast<float>();

@@ -93,7 +93,8 @@ void Pressing::localise(const SampleBlocks& blocks, double margin) {
     reach.centre = frame * Vec3(0.0, 0.0, -tool_.wheel.radius);
     reach.axis = frame.linear().col(1);
     reach.direction = frame.linear().col(2);
-    reach.radius = tool_.wheel.radius + margin;
+    // All that the map looks at, whichever blocks it lies in.
+    reach.radius = tool_.wheel.radius + margin + map_.behind();
     reach.half_width = 0.5 * (tool_.wheel.width + blocks.field().spacing) + model_.beside();
     reach.min_along = tool_.ahead;
     near_.find(blocks, reach, hits_);

@@ -101,7 +101,7 @@ void GapMap::update(const SampleBlocks& blocks, std::span<const std::uint32_t> h
                     const Frame& work_from_contact, double reach, double ahead, double pressable) {
     prepare(blocks);
     // Else the surface had edges where its gap is `reach`.
-    const double seen = reach + cells_.whole_layer();
+    const double seen = reach + behind();
     place(blocks, hits, work_from_contact, {reach, seen, ahead});
     removal_.start(placed_.regular().size());
     fit_grid(placed_.half_length());

@@ -65,6 +65,8 @@ class GapMap {
     }
     void look_at_all_edges(const SampleBlocks& blocks);
 
+    /// mm beyond the `reach` of `update` up to which samples go on with what is in reach.
+    double behind() const { return cells_.whole_layer(); }
     /// Grid of the last update; its length follows the samples in reach.
     const ContactGrid& grid() const { return grid_; }
     const Eigen::ArrayXd& gap() const { return cells_.gap(); }  ///< mm; +inf: no surface

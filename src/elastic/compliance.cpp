@@ -96,7 +96,7 @@ void ComplianceOperator::work_on_columns(int count) {
     }
 }
 
-EdgeLoads::Softness ComplianceOperator::edge_softness() {
+EdgeSoftness ComplianceOperator::find_edge_softness() {
     Eigen::ArrayXd pressure(grid().cells()), displacement(grid().cells());
     const auto kappa = [&](int line, int step, int count, int stride) {
         if (count < 2) return 0.0;
@@ -118,7 +118,7 @@ std::unique_ptr<ComplianceOperator> ElasticModel::compliance(const ContactGrid& 
     auto prepared = make_operator(grid);
     if (!prepared->local()) {
         prepared->edges_ = EdgeLoads(
-            *edge_softness_.get(grid, grid.nx, [&] { return prepared->edge_softness(); }));
+            *edge_softness_.get(grid, grid.nx, [&] { return prepared->find_edge_softness(); }));
     }
     return prepared;
 }

@@ -172,6 +172,7 @@ void Pressing::solve(const SampleBlocks& blocks, ContactProblem problem) {
     stands_at_ = placed_ + solution_.approach;
     displaced_ = displaced(grid, solution_, problem.coverage, model_.beside());
     map_.reach_beside(displaced_);
+    map_.sharpen_edges(blocks, solution_.pressure, contact_->edge_softness());
 }
 
 bool Pressing::find_touch(const SampleBlocks& blocks, bool by_samples) {

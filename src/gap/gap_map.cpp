@@ -106,12 +106,14 @@ void GapMap::update(const SampleBlocks& blocks, std::span<const std::uint32_t> h
     removal_.start(placed_.regular().size());
     fit_grid(placed_.half_length());
     placed_.put_on(grid_);
+    profiles_.clear();
     cells_.clear(grid_);
     cells_.map(placed_, blocks, grid_, pressable);
     end_flat();
 }
 
 void GapMap::look_at_all_edges(const SampleBlocks& blocks) {
+    profiles_.clear();
     cells_.clear(grid_);
     cells_.map(placed_, blocks, grid_, EdgeCells::kAll);
     end_flat();

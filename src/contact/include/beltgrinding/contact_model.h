@@ -75,6 +75,14 @@ struct ContactSolution {
     Eigen::ArrayXXd axial;
 };
 
+/// How a grid's cells give way at an edge of the workpiece: kappa, mm per MPa on a whole cell, of
+/// lines along and across the wheel, of which a line load sinks in by kappa ln(1 / distance in
+/// cells), but for a constant. 0: each place for itself, or not known.
+struct EdgeSoftness {
+    double along = 0.0;   ///< of lines along the circumference
+    double across = 0.0;  ///< of lines along the axis
+};
+
 /// What a prepared contact knows of its last solution beyond that.
 class ContactMemory {
   public:
@@ -103,6 +111,8 @@ class PreparedContact {
     /// `start`, if not null, is a pressure (MPa per cell) to start from. Throws InputError for a
     /// problem that is invalid, or not of this grid; Cancelled, after which it can solve anew.
     ContactSolution solve(const ContactProblem& problem, const Eigen::ArrayXd* start = nullptr);
+    /// How its cells give way at edges.
+    virtual EdgeSoftness edge_softness() const { return {}; }
     /// For another one, of the same model and grid, to go on from to the last bit. Null: the
     /// pressure is all.
     virtual std::shared_ptr<const ContactMemory> memory() const { return nullptr; }

@@ -36,6 +36,7 @@ class ComplianceOperator : public PreparedContact {
                        Eigen::ArrayXd& displacement);
     void set_coverage(const Eigen::ArrayXd& coverage) { edges_.find(working_, coverage); }
     virtual void clear_surface() {}
+    EdgeSoftness edge_softness() const final { return edges_.softness(); }
     /// An estimate of the diagonal of C at full coverage, mm/MPa: scales the solver's first step.
     virtual double diagonal() const = 0;
     /// True if a cell's displacement depends on its own pressure only.
@@ -67,7 +68,7 @@ class ComplianceOperator : public PreparedContact {
     bool goes_on_beyond(const ContactProblem& problem, const ContactSolution& solution, int first,
                         int last);
     /// kappa, from how much less the neighbour of a pressed line of cells sinks in.
-    EdgeLoads::Softness edge_softness();
+    EdgeSoftness find_edge_softness();
 
     ContactGrid working_;
     EdgeLoads edges_;
@@ -85,7 +86,7 @@ class ElasticModel : public ContactModel {
     /// The grid is a valid one. Safe from several threads.
     virtual std::unique_ptr<ComplianceOperator> make_operator(const ContactGrid& grid) const = 0;
 
-    mutable SpectrumCache<EdgeLoads::Softness> edge_softness_;  // by the number of columns
+    mutable SpectrumCache<EdgeSoftness> edge_softness_;  // by the number of columns
 };
 
 /// Elastic foundation (Winkler): u = p / stiffness, each cell for itself.

@@ -20,13 +20,9 @@ constexpr double kLineOverBeside = 1.5;
 /// section 2.3: the mean of -ln |x - t|, by the load itself). Away from edges: kappa ln(1 / w).
 class EdgeLoads {
   public:
-    /// kappa, mm per MPa on the whole cell, of strips along and across the wheel.
-    struct Softness {
-        double along = 0.0, across = 0.0;
-    };
-
     EdgeLoads() = default;
-    explicit EdgeLoads(Softness softness) : softness_(softness) {}
+    explicit EdgeLoads(EdgeSoftness softness) : softness_(softness) {}
+    const EdgeSoftness& softness() const { return softness_; }
     /// Finds the edges of `share` on a grid, unless they are those of the last call.
     void find(const ContactGrid& grid, const Eigen::ArrayXd& share);
     /// Puts `load` (MPa on the whole cell) where it acts.
@@ -44,7 +40,7 @@ class EdgeLoads {
     /// Of cell (i, j), of which the share w is covered.
     Part part_at(int i, int j, double w, const OpenSides& open) const;
 
-    Softness softness_;
+    EdgeSoftness softness_;
     ContactGrid grid_;
     Eigen::ArrayXd share_;
     std::vector<Part> parts_;

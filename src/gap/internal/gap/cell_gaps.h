@@ -36,6 +36,7 @@ class CellGaps {
     const Eigen::ArrayXd& gap() const { return gap_; }  ///< mm; +inf: no surface
     const Coverage& coverage() const { return coverage_; }
     const EdgeCells& edges() const { return edges_; }
+    const EdgePatches& patches() const { return patches_; }
     /// mm: the layer that is used where no lower step is looked for or found.
     double whole_layer() const { return whole_layer_; }
     /// The same, half of the lowest step that was found.

@@ -12,6 +12,7 @@
 #include "contact/displaced.h"
 #include "gap/cell_gaps.h"
 #include "gap/cell_table.h"
+#include "gap/edge_profiles.h"
 #include "gap/noses.h"
 #include "gap/placed_samples.h"
 #include "gap/sample_removal.h"
@@ -82,6 +83,13 @@ class GapMap {
 
     /// What bears pressure beyond the side faces from now on, until the next update.
     void reach_beside(const DisplacedPressure& pressure);
+    /// Shares the pressure (MPa by cell) of the cells at edges out among their samples, from now
+    /// on, until the next update.
+    void sharpen_edges(const SampleBlocks& blocks, const Eigen::ArrayXd& pressure,
+                       const EdgeSoftness& softness) {
+        profiles_.sharpen(grid_, coverage(), pressure, softness, blocks.field().spacing,
+                          cells_.patches(), placed_.footprints());
+    }
     /// mm3/s of `rate`, mm/s per cell along the surface's normal, and of `beside`, mm/s as
     /// `DisplacedPressure::beside`.
     double volume_rate(const Eigen::ArrayXd& rate, const Eigen::ArrayXd& beside) const;
@@ -196,6 +204,7 @@ class GapMap {
     Noses::Sides sides_;  // of the grid's cells
     PlacedSamples placed_;
     CellGaps cells_;
+    EdgeProfiles profiles_;
     SampleRemoval removal_;
     mutable CellTable table_;  // of a pressure
 };

@@ -7,8 +7,8 @@
 namespace beltgrinding {
 namespace {
 
-constexpr int kLooked = 6;         // cells inwards whose loads bend the surface at the edge
-constexpr double kClearly = 2.0;   // an edge that lies askew counts across the axis it turns to more
+constexpr int kLooked = 6;        // cells inwards whose loads bend the surface at the edge
+constexpr double kClearly = 2.0;  // an edge that lies askew counts across the axis it turns to more
 constexpr int kAll = 2 * EdgeProfiles::kStrips;
 
 /// The mean over a strip of -ln of the distance to a line of load 1 that is spread over another:
@@ -85,7 +85,7 @@ void EdgeProfiles::find(const ContactGrid& grid, const Eigen::ArrayXd& share,
                 !(share[second - side * step] > 0.0))
                 continue;
             const auto number = static_cast<int>(profiles_.size());
-            Profile profile{cell, across, side, share[cell], 0.0, {}, {}, {}};
+            Profile profile{cell, across, side, share[cell], 0.0, false, {}, {}, {}};
             profile.edge = place + side * (share[cell] - 0.5);
             profiles_.push_back(profile);
             Numbers& numbers = numbers_[across ? 1 : 0];
@@ -98,8 +98,13 @@ void EdgeProfiles::find(const ContactGrid& grid, const Eigen::ArrayXd& share,
     }
 }
 
-void EdgeProfiles::gather(const ContactGrid& grid, double spacing, const EdgePatches& patches,
-                          std::span<const Footprint> footprints) {
+void EdgeProfiles::gather(const ContactGrid& grid, const SampleBlocks& blocks,
+                          const EdgePatches& patches, std::span<const Footprint> footprints) {
+    const double spacing = blocks.field().spacing;
+    const auto on_border = [&](const Footprint& f) {
+        const auto& block = blocks.block(static_cast<std::uint32_t>(f.position / kBlockLanes));
+        return (block.border >> (f.position % kBlockLanes) & 1U) != 0;
+    };
     patches.for_patches([&](std::size_t number, const Patch& patch) {
         const Footprint& f = footprints[number];
         if (!f.nearest || !f.on_grid || !(f.inside > 0.0F)) return;
@@ -115,6 +120,7 @@ void EdgeProfiles::gather(const ContactGrid& grid, double spacing, const EdgePat
             const double slope = across ? f.slope_y : f.slope_s;
             const double along = across ? f.slope_s * (i - s) : f.slope_y * (j - y);
             const double reach = spacing / (across ? grid.dy : grid.ds);
+            if (std::abs(away) < reach && on_border(f)) profile.ends = true;
             for (int k = 0; k < kAll; ++k) {
                 const double off = away - profile.middle(k);
                 const double weight = f.inside * (1.0 - std::abs(off) / reach);
@@ -130,6 +136,7 @@ void EdgeProfiles::gather(const ContactGrid& grid, double spacing, const EdgePat
 
 bool EdgeProfiles::solve(const ContactGrid& grid, const Eigen::ArrayXd& share,
                          const Eigen::ArrayXd& pressure, double softness, Profile& profile) {
+    if (!profile.ends) return false;
     constexpr int kUnknown = kAll + 2;
     const int step = profile.side * (profile.across ? grid.nx : 1);
     const int place = profile.across ? profile.cell / grid.nx : profile.cell % grid.nx;
@@ -143,9 +150,8 @@ bool EdgeProfiles::solve(const ContactGrid& grid, const Eigen::ArrayXd& share,
         const auto strip = static_cast<std::size_t>(a);
         if (!(profile.weight[strip] > 0.0)) return false;
         for (int b = 0; b < kAll; ++b)
-            matrix(a, b) =
-                line_over_line(begin(a), profile.width(a), begin(b), profile.width(b)) *
-                profile.width(b);
+            matrix(a, b) = line_over_line(begin(a), profile.width(a), begin(b), profile.width(b)) *
+                           profile.width(b);
         matrix(a, kAll + a / kStrips) = -1.0;
         matrix(kAll + a / kStrips, a) = profile.width(a);
         wanted[a] = -profile.gap[strip] / profile.weight[strip] / softness;
@@ -181,8 +187,8 @@ double EdgeProfiles::factor(const ContactGrid& grid, const Eigen::ArrayXd& press
     const int cells[4] = {f.cell, f.cell + 1, f.cell + above, f.cell + above + 1};
     const int i = f.cell % grid.nx, j = f.cell / grid.nx;
     const double at = across ? patch.y : patch.s, half = across ? patch.half_y : patch.half_s;
-    const int own = std::clamp(static_cast<int>(std::lround(at)), 0,
-                               across ? grid.ny - 1 : grid.nx - 1);
+    const int own =
+        std::clamp(static_cast<int>(std::lround(at)), 0, across ? grid.ny - 1 : grid.nx - 1);
     double before = 0.0, after = 0.0;
     for (int row = 0; row < 2; ++row) {
         const int one = row * (across ? 1 : 2), other = one + (across ? 2 : 1);
@@ -215,14 +221,14 @@ void EdgeProfiles::restore(std::span<Footprint> footprints) {
 
 void EdgeProfiles::sharpen(const ContactGrid& grid, const Eigen::ArrayXd& share,
                            const Eigen::ArrayXd& pressure, const EdgeSoftness& softness,
-                           double spacing, const EdgePatches& patches,
+                           const SampleBlocks& blocks, const EdgePatches& patches,
                            std::span<Footprint> footprints) {
     restore(footprints);
     if (patches.empty() || !(softness.along > 0.0) || !(softness.across > 0.0)) return;
     if (pressure.size() != grid.cells()) return;
     find(grid, share, pressure);
     if (profiles_.empty()) return;
-    gather(grid, spacing, patches, footprints);
+    gather(grid, blocks, patches, footprints);
     for (Profile& profile : profiles_) {
         const double yields = profile.across ? softness.along : softness.across;
         if (solve(grid, share, pressure, yields, profile)) continue;
@@ -233,8 +239,8 @@ void EdgeProfiles::sharpen(const ContactGrid& grid, const Eigen::ArrayXd& share,
     patches.for_patches([&](std::size_t number, const Patch& patch) {
         Footprint& f = footprints[number];
         if (!f.nearest || !f.on_grid || !(f.inside > 0.0F)) return;
-        const double by = factor(grid, pressure, f, patch, false) *
-                          factor(grid, pressure, f, patch, true);
+        const double by =
+            factor(grid, pressure, f, patch, false) * factor(grid, pressure, f, patch, true);
         if (by == 1.0) return;
         before_.push_back({number, {f.shares[0], f.shares[1], f.shares[2], f.shares[3]}});
         for (float& one : f.shares) one *= static_cast<float>(by);

@@ -29,8 +29,7 @@ class EdgePatches {
     /// Calls visit(number of the footprint, its patch in cells) for each.
     template <class Visit>
     void for_patches(Visit visit) const {
-        for (const EdgePatch& p : patches_)
-            visit(p.footprint, Patch{p.s, p.y, p.half_s, p.half_y});
+        for (const EdgePatch& p : patches_) visit(p.footprint, Patch{p.s, p.y, p.half_s, p.half_y});
     }
     /// Calls visit(cell, its share that is covered, the sample's gap at its centre, mm) for what
     /// patches cover.

@@ -9,24 +9,27 @@
 #include "contact/coverage.h"
 #include "gap/edge_patches.h"
 #include "gap/footprint.h"
+#include "heightfield/sample_blocks.h"
 
 namespace beltgrinding {
 
 /// How the pressure goes within the two outermost cells at an edge of the workpiece. A cell has one
 /// pressure; towards a sharp edge it rises with one over the root of the distance, until the edge
-/// is worn round. So the cells' loads are shared out over strips, four to a cell, which press on one
-/// another as lines do (Johnson, Contact Mechanics, 1985, section 2.3) and follow the samples' own
-/// gaps. The load of each cell stays.
+/// is worn round. So the cells' loads are shared out over strips, four to a cell, which press on
+/// one another as lines do (Johnson, Contact Mechanics, 1985, section 2.3) and follow the samples'
+/// own gaps. The load of each cell stays.
 class EdgeProfiles {
   public:
     static constexpr int kStrips = 4;  // of a cell
 
     /// Scales the shares of the samples near edges, so that `value_at` gives what their patches
-    /// bear. `share`: of each cell that is covered; `pressure`, MPa by cell; `spacing`: mm, of the
-    /// samples. Where it was called before on the same footprints, from their shares before that.
+    /// bear. `share`: of each cell that is covered; `pressure`, MPa by cell. Where the surface
+    /// falls off and does not end, nothing changes. Where it was called before on the same
+    /// footprints, from their shares before that.
     void sharpen(const ContactGrid& grid, const Eigen::ArrayXd& share,
-                 const Eigen::ArrayXd& pressure, const EdgeSoftness& softness, double spacing,
-                 const EdgePatches& patches, std::span<Footprint> footprints);
+                 const Eigen::ArrayXd& pressure, const EdgeSoftness& softness,
+                 const SampleBlocks& blocks, const EdgePatches& patches,
+                 std::span<Footprint> footprints);
     /// The footprints are others from now on.
     void clear() { before_.clear(); }
 
@@ -38,6 +41,7 @@ class EdgeProfiles {
         int side;        // 1: outwards is towards higher places
         double covered;  // of the outermost cell
         double edge;     // its place, in cells from the middle of the first one
+        bool ends;       // a border of the surface lies there
         std::array<double, 2 * kStrips> gap, weight, pressure;
 
         double width(int strip) const { return (strip < kStrips ? covered : 1.0) / kStrips; }
@@ -51,11 +55,10 @@ class EdgeProfiles {
     };
     using Numbers = std::vector<int>;  // of the profile by cell; -1: none
 
-    void find(const ContactGrid& grid, const Eigen::ArrayXd& share,
-              const Eigen::ArrayXd& pressure);
-    void gather(const ContactGrid& grid, double spacing, const EdgePatches& patches,
+    void find(const ContactGrid& grid, const Eigen::ArrayXd& share, const Eigen::ArrayXd& pressure);
+    void gather(const ContactGrid& grid, const SampleBlocks& blocks, const EdgePatches& patches,
                 std::span<const Footprint> footprints);
-    /// False where samples are too few.
+    /// False where samples are too few, or there is no border.
     static bool solve(const ContactGrid& grid, const Eigen::ArrayXd& share,
                       const Eigen::ArrayXd& pressure, double softness, Profile& profile);
     /// What the sample's pressure is by the profiles across one axis, over what it is without.

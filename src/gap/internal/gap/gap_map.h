@@ -87,8 +87,8 @@ class GapMap {
     /// on, until the next update.
     void sharpen_edges(const SampleBlocks& blocks, const Eigen::ArrayXd& pressure,
                        const EdgeSoftness& softness) {
-        profiles_.sharpen(grid_, coverage(), pressure, softness, blocks.field().spacing,
-                          cells_.patches(), placed_.footprints());
+        profiles_.sharpen(grid_, coverage(), pressure, softness, blocks, cells_.patches(),
+                          placed_.footprints());
     }
     /// mm3/s of `rate`, mm/s per cell along the surface's normal, and of `beside`, mm/s as
     /// `DisplacedPressure::beside`.

@@ -8,7 +8,7 @@ namespace beltgrinding {
 namespace {
 
 constexpr int kLooked = 6;        // cells inwards whose loads bend the surface at the edge
-constexpr double kClearly = 2.0;  // an edge that lies askew counts across the axis it turns to more
+constexpr double kClearly = 1.2;  // an edge that lies askew counts across the axis it turns to more
 constexpr int kAll = 2 * EdgeProfiles::kStrips;
 
 /// The mean over a strip of -ln of the distance to a line of load 1 that is spread over another:
@@ -26,7 +26,7 @@ double line_over_line(double a, double wa, double b, double wb) {
 /// To which sides of a cell there is nothing: of an edge that is clearly across one axis.
 OpenSides edge_of(const ContactGrid& grid, const Eigen::ArrayXd& share, int i, int j) {
     OpenSides open = open_sides(grid, share, i, j);
-    if (open.along == 0 || open.across == 0) return open;
+    if (open.along == 0 && open.across == 0) return open;
     double by_s = 0.0, by_y = 0.0;
     for (int b = -1; b <= 1; ++b) {
         for (int a = -1; a <= 1; ++a) {
@@ -38,13 +38,9 @@ OpenSides edge_of(const ContactGrid& grid, const Eigen::ArrayXd& share, int i, i
     }
     by_s = std::abs(by_s);
     by_y = std::abs(by_y);
-    if (by_s > kClearly * by_y)
-        open.across = 0;
-    else if (by_y > kClearly * by_s)
-        open.along = 0;
-    else
-        open = {0, 0};
-    return open;
+    if (by_s > kClearly * by_y) return {open.along, 0};
+    if (by_y > kClearly * by_s) return {0, open.across};
+    return {0, 0};
 }
 
 }  // namespace

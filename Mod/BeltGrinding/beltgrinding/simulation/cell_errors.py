@@ -29,7 +29,13 @@ def estimate(job: Job, field: core.HeightField, unresolved: Sequence[Floats]) ->
     """Gives a ground field its ``height_error`` by ``unresolved``, (n,) mm of each program; of a rigid tool none."""
     if not all(len(one) for one in unresolved):
         return
-    field.set_height_error(MARGIN * np.abs(np.sum(unresolved, axis=0)), RINGS)
+    off = np.sum(unresolved, axis=0)
+    ground, areas = _ground(field), np.asarray(field.areas, float)
+    depth = np.where(ground, np.asarray(field.stock_height, float) - np.asarray(field.height), 0.0)
+    volume = float((areas * depth).sum())
+    # A force grinds one volume whatever the cells: what they take too much at edges is missing elsewhere.
+    balance = abs(float((areas * off).sum())) / volume if volume > 0.0 else 0.0
+    field.set_height_error(MARGIN * (np.abs(off) + balance * depth), RINGS)
 
 
 def figures(job: Job, field: core.HeightField) -> dict[str, Json]:

@@ -59,14 +59,15 @@ def main():
                 other[k] = other[k] / change if what == "feed" else other[k] * change
                 ends.append(height(other, ones) if what == "feed" else height(feeds, other))
             found = (ends[1] - ends[0]) / (2.0 * CHANGE)
-            single += (taken[some] / found[samples[some]] - 1.0).tolist()
-            whole.append(taken.sum() / found[samples].sum() - 1.0)
+            single += (found[samples[some]] / taken[some] - 1.0).tolist()
+            whole.append(found[samples].sum() / taken.sum() - 1.0)
             column = np.zeros(len(found))
             first = alone[what].first.astype(int)
             mine = slice(first[k], first[k + 1])
             column[alone[what].sample[mine]] = alone[what].depth[mine]
-            before[what][0].extend((column / found - 1.0)[samples[some]].tolist())
-            before[what][1].append(column.sum() / found[column != 0.0].sum() - 1.0)
+            own = samples[some][column[samples[some]] > 0.0]
+            before[what][0].extend((found[own] / column[own] - 1.0).tolist())
+            before[what][1].append(found[column != 0.0].sum() / column.sum() - 1.0)
     rows = [(what, *one) for what, one in errors.items()]
     rows += [(f"{what} alone", *one) for what, one in before.items()]
     for what, single, whole in rows:

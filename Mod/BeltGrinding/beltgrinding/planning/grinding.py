@@ -65,7 +65,8 @@ def grind(
     data = rounds.settled(data, context)
     part = context.part(0.0, SEARCHED)
     found = searches.find(data, first, settings, search, zones, told, stop, part)
-    rest = context.part(SEARCHED, 1.0)
+    rest, budget = context.part(SEARCHED, 1.0), search.budget_s
+    in_time = settings["goal"] == "time"
     rounds_told = 0
 
     def heard(row: dict[str, Any]) -> None:
@@ -76,8 +77,8 @@ def grind(
 
     def over() -> bool:
         """Whether it is polished: the budget is spent, or who asked wants no more."""
-        late = time.monotonic() - begun > search.budget_s or (stop is not None and stop())
-        return late and rounds_told >= POLISHED and settings["goal"] != "time"
+        late = time.monotonic() - begun > budget or (stop is not None and stop())
+        return late and rounds_told >= POLISHED and not in_time
 
     ground = _planned(data, found.best, settings, rest, heard, zones, found.rows, over)
     return ground._replace(search=found.report())

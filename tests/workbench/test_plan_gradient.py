@@ -7,9 +7,10 @@ from beltgrinding.engine import InputError, core
 from beltgrinding.planning import rounds
 from beltgrinding.planning.commands import Commands
 from beltgrinding.simulation import run as runs
-from test_plan import SETTINGS, job  # noqa: F401, the fixture
+import test_plan
 from test_plan_forces import columns
 
+SETTINGS, job = test_plan.SETTINGS, test_plan.job  # the fixture
 CHANGE = 0.03
 APART = 22.0  # mm: what motions do that far from each other does not meet
 OF_MOST = 0.3  # of a column's greatest entry: where its entries are looked at one by one
@@ -24,7 +25,7 @@ def influences(run):
 
 
 @pytest.fixture(scope="module")
-def changed(job):  # noqa: F811
+def changed(job):
     """(commands, run with both influences, numbers of motions far apart, mm lower in the end by time and by force)."""
     commands = Commands(job, rounds.validate({**SETTINGS, "force_max_N": 60.0}))
     run = runs.run(job, influence=True, forces=True)
@@ -111,7 +112,7 @@ def test_without_feedback_all_stays():
     assert told.depth == pytest.approx([0.3, 0.2, 0.1])
 
 
-def test_under_position_control_it_is_not_known(job):  # noqa: F811
+def test_under_position_control_it_is_not_known(job):
     machine = {**job["belt_machine"], "control": "position"}
     run = runs.run({**job, "belt_machine": machine}, influence=True)
     assert len(run.influence.feedback) == len(run.influence)

@@ -134,7 +134,9 @@ def propose(job: Job | Json, context: Context = None) -> dict[str, Any]:
     }
 
 
-def _first_passes(job: Job, settings: dict[str, Any], context: Context) -> tuple[dict[str, Any], dict[str, Any]]:
+def _first_passes(
+    job: Job, settings: dict[str, Any], context: Context
+) -> tuple[dict[str, Any], dict[str, Any]]:
     """(passes, settings of them), with ``min_length_mm`` halved until one is long enough. Raises InputError, where
     no pass can lie."""
     while True:

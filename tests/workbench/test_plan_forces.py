@@ -59,7 +59,7 @@ def test_what_more_force_removes_is_what_simulations_say():
     assert (
         np.median(error) < 0.04 and np.percentile(error, 95) < 0.15
     )  # of a step of 5 %, at the contact's rim
-    assert told.sum() == pytest.approx(found.sum(), rel=0.01)
+    assert told.sum() == pytest.approx(found.sum(), rel=0.02)
     copied = np.abs(removed - found).sum()
     assert np.abs(told - found).sum() < 0.2 * copied
 

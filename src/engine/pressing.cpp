@@ -172,7 +172,11 @@ void Pressing::solve(const SampleBlocks& blocks, ContactProblem problem) {
     stands_at_ = placed_ + solution_.approach;
     displaced_ = displaced(grid, solution_, problem.coverage, model_.beside());
     map_.reach_beside(displaced_);
-    map_.sharpen_edges(blocks, solution_.pressure, contact_->edge_softness());
+    share_out(blocks, solution_);
+}
+
+void Pressing::share_out(const SampleBlocks& blocks, const ContactSolution& solution) {
+    map_.sharpen_edges(blocks, solution.pressure, contact_->edge_softness());
 }
 
 bool Pressing::find_touch(const SampleBlocks& blocks, bool by_samples) {

@@ -81,7 +81,7 @@ void EdgeProfiles::find(const ContactGrid& grid, const Eigen::ArrayXd& share,
                 !(share[second - side * step] > 0.0))
                 continue;
             const auto number = static_cast<int>(profiles_.size());
-            Profile profile{cell, across, side, share[cell], 0.0, false, {}, {}, {}};
+            Profile profile{cell, across, side, share[cell], 0.0, false, false, {}, {}, {}};
             profile.edge = place + side * (share[cell] - 0.5);
             profiles_.push_back(profile);
             Numbers& numbers = numbers_[across ? 1 : 0];
@@ -101,7 +101,7 @@ void EdgeProfiles::gather(const ContactGrid& grid, const SampleBlocks& blocks,
         const auto& block = blocks.block(static_cast<std::uint32_t>(f.position / kBlockLanes));
         return (block.border >> (f.position % kBlockLanes) & 1U) != 0;
     };
-    patches.for_patches([&](std::size_t number, const Patch& patch) {
+    patches.for_patches([&](std::size_t number, const Patch&) {
         const Footprint& f = footprints[number];
         if (!f.nearest || !f.on_grid || !(f.inside > 0.0F)) return;
         const double s = f.s / grid.ds + 0.5 * (grid.nx - 1);
@@ -126,7 +126,6 @@ void EdgeProfiles::gather(const ContactGrid& grid, const SampleBlocks& blocks,
                 profile.gap[strip] += weight * (f.own_gap + along + slope * profile.side * off);
             }
         }
-        static_cast<void>(patch);
     });
 }
 
@@ -198,7 +197,7 @@ double EdgeProfiles::factor(const ContactGrid& grid, const Eigen::ArrayXd& press
         const int line = std::min(across ? own : j + row, grid.ny - 1);
         const int found =
             numbers_[across ? 1 : 0][static_cast<std::size_t>(line * grid.nx + column)];
-        if (found < 0) {
+        if (found < 0 || !profiles_[static_cast<std::size_t>(found)].solved) {
             after += weight * value;
             continue;
         }
@@ -227,10 +226,7 @@ void EdgeProfiles::sharpen(const ContactGrid& grid, const Eigen::ArrayXd& share,
     gather(grid, blocks, patches, footprints);
     for (Profile& profile : profiles_) {
         const double yields = profile.across ? softness.along : softness.across;
-        if (solve(grid, share, pressure, yields, profile)) continue;
-        for (int& number : numbers_[profile.across ? 1 : 0])
-            if (number >= 0 && &profiles_[static_cast<std::size_t>(number)] == &profile)
-                number = -1;
+        profile.solved = solve(grid, share, pressure, yields, profile);
     }
     patches.for_patches([&](std::size_t number, const Patch& patch) {
         Footprint& f = footprints[number];

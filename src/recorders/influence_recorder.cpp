@@ -190,14 +190,19 @@ void ForceInfluenceRecorder::removed(const Removal& removal) {
         const Eigen::Index columns = map.grid().nx;
         beside_.head(columns) = beside_.head(columns).min(most.head(columns));
         beside_.tail(columns) = beside_.tail(columns).min(most.tail(columns));
-        if (removal.beside.size() > 0) beside_ -= removal.beside;
-        beside_ /= kMoreForce;
     }
-    map.for_samples((pressed_ - removal.rate) / kMoreForce, beside_, removal.duration,
-                    [&](std::size_t position, double amount) {
-                        go_on(motion_);
-                        add(blocks_.sample(position), map.scale() * amount);
-                    });
+    go_on(motion_);
+    const double per = map.scale() / kMoreForce;
+    const auto take = [&](const Eigen::ArrayXd& rate, const Eigen::ArrayXd& beside, double sign) {
+        map.for_samples(rate, beside, removal.duration, [&](std::size_t position, double amount) {
+            add(blocks_.sample(position), sign * per * amount);
+        });
+    };
+    take(removal.rate, removal.beside, -1.0);
+    // At edges more pressure has other shares among the samples.
+    removal.pressing.share_out(blocks_, stronger);
+    take(pressed_, beside_, 1.0);
+    removal.pressing.share_out(blocks_, removal.pressing.solution());
 }
 
 }  // namespace beltgrinding

@@ -45,21 +45,22 @@ def columns(influence, samples):
 
 
 def test_what_more_force_removes_is_what_simulations_say():
-    """Central differences of whole simulations; the widened contact is in it, a multiple of the removal is not it."""
+    """5 % more force in whole simulations; the widened contact is in it, a multiple of the removal is not it. Less force
+    would be another thing: at the border the contact changes its shape there."""
     asked = runs.run(single(30.0), influence=True, forces=True)
     plain = runs.run(single(30.0))
     assert (np.asarray(asked.field.height) == np.asarray(plain.field.height)).all()
-    more, less = (np.asarray(runs.run(single(f)).field.height) for f in (31.5, 28.5))
-    found = (less - more) / 0.1
+    more, less = (np.asarray(run.field.height) for run in (runs.run(single(31.5)), plain))
+    found = (less - more) / 0.05
     told = columns(asked.force_influence, asked.field.size).sum(axis=1)
     removed = columns(asked.influence, asked.field.size).sum(axis=1)
     mine = told > 0.2 * told.max()
     assert mine.sum() > 100
     error = np.abs(told - found)[mine] / found[mine]
     assert (
-        np.median(error) < 0.04 and np.percentile(error, 95) < 0.15
+        np.median(error) < 0.03 and np.percentile(error, 95) < 0.15
     )  # of a step of 5 %, at the contact's rim
-    assert told.sum() == pytest.approx(found.sum(), rel=0.02)
+    assert told.sum() == pytest.approx(found.sum(), rel=0.01)
     copied = np.abs(removed - found).sum()
     assert np.abs(told - found).sum() < 0.2 * copied
 

@@ -237,9 +237,9 @@ struct Influence {
     /// the surface is after all motions if a group's motions take longer, or press more. What is
     /// ground deeper is pressed less by later motions, and the rest of their contact more: the
     /// volume stays. `removed`: what the same motions removed, with its `feedback`; `area`
-    /// (samples), mm2. Entries below a hundredth of a group's greatest are left out, their volume
-    /// is not. The same bits on any number of threads. Throws InputError where the numbers do not
-    /// fit, and Cancelled.
+    /// (samples), mm2. Entries below 3 % of a group's greatest are left out; the others get their
+    /// volume, unless that were more than a quarter of theirs. The same bits on any number of
+    /// threads. Throws InputError where the numbers do not fit, and Cancelled.
     Influence in_the_end(const Influence& removed, std::span<const float> area,
                          std::span<const std::uint32_t> group, std::size_t count,
                          const RunContext& context = {}) const;

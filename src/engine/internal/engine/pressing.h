@@ -73,6 +73,9 @@ class Pressing final : public Keeps<Latest<PressingMemory>> {
     std::optional<Pressed> with_force(double force);
     /// The same under the same force, with the gap changed by so many mm, by cell.
     std::optional<Pressed> with_gap(const Eigen::ArrayXd& change);
+    /// Shares a solution's pressure at edges out among their samples, from now on. The next one
+    /// does so by itself; after `with_force` or `with_gap`, whoever asked must.
+    void share_out(const SampleBlocks& blocks, const ContactSolution& solution);
     /// From here on `hold` is about this programmed pose.
     void stand(const Frame& work_from_contact) {
         programmed_ = work_from_contact;

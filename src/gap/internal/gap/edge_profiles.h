@@ -42,6 +42,7 @@ class EdgeProfiles {
         double covered;  // of the outermost cell
         double edge;     // its place, in cells from the middle of the first one
         bool ends;       // a border of the surface lies there
+        bool solved;     // else its cells keep an even pressure
         std::array<double, 2 * kStrips> gap, weight, pressure;
 
         double width(int strip) const { return (strip < kStrips ? covered : 1.0) / kStrips; }

@@ -25,11 +25,13 @@ def allowed() -> Iterator[None]:
         yield
     finally:
         _Streams.allowed, _Streams.read = False, None
-        if _Streams.output is not None:
-            sys.stdout.flush()
-            os.dup2(_Streams.output, sys.stdout.fileno())
-            os.close(_Streams.output)
-            _Streams.output = None
+        output, _Streams.output = _Streams.output, None
+        if output is not None:
+            try:
+                sys.stdout.flush()
+            finally:
+                os.dup2(output, sys.stdout.fileno())
+                os.close(output)
 
 
 def named(path: Path | str) -> bool:

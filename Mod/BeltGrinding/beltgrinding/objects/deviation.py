@@ -11,6 +11,7 @@ import Mesh
 
 from ..engine import InputError, core
 from ..job.tolerances import colour_scale
+from ..simulation import cell_errors
 from . import preferences, shown
 from .fields import field_of
 from .kinds import DocumentObject, Field, Limits, MeshShape, Scale
@@ -56,7 +57,7 @@ OUTPUTS = (
         "CellError95",
         "Distance",
         "Statistics",
-        "95 % of the area are less off by the size of the contact's cells; 0: not known",
+        "95 % of the ground area are less off by the size of the contact's cells; 0: not known",
     ),
     Output("ExpectedInTolerance", "Float", "Statistics", "mean probability, percent; 0: not known"),
     Output(
@@ -262,8 +263,7 @@ def show(obj: DocumentObject, field: Field, scale: Scale, new_mesh: bool = True)
     obj.UncertaintyMean, obj.Uncertainty95 = statistics.get("sd_mean", 0.0), sd
     obj.ExpectedInTolerance = 100.0 * statistics.get("expected_in_tolerance_share", 0.0)
     obj.UncertaintyLimit = round_up(sd)
-    known = shown.has(field, shown.CELL_ERROR)
-    obj.CellError95 = shown.percentile(field, field.height_error, 95.0) if known else 0.0
+    obj.CellError95 = cell_errors.p95(field)
     _show_temperatures(obj, field)
     _show_finish(obj, field)
     obj.ToleranceLower, obj.ToleranceUpper, obj.ColourLimit = scale

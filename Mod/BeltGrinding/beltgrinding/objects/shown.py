@@ -165,20 +165,20 @@ def bounded(obj: DocumentObject, field: Field, scale: Scale) -> Scale:
     if obj.Bounds == BY_TOLERANCE:
         limit = obj.TimesTolerance * widest
     elif obj.Bounds == BY_PERCENTILE:
-        limit = percentile(field, field.height, obj.Percentile)
+        limit = percentile(field, obj.Percentile)
     return lower, upper, max(limit, 1.01 * widest, 1e-4)
 
 
-def percentile(field: Field, values: Any, share: float) -> float:
-    """The magnitude of ``values`` (n,) that ``share`` percent of the area lie within; missed samples are left out."""
+def percentile(field: Field, share: float) -> float:
+    """|deviation| in mm that ``share`` percent of the area lie within; missed samples are left out."""
     found = (field.flags & core.MISSED) == 0
-    sizes, area = np.abs(np.asarray(values)[found]), field.areas[found].astype(float)
-    if not len(sizes):
+    height, area = np.abs(field.height[found]), field.areas[found].astype(float)
+    if not len(height):
         return 0.0
-    order = np.argsort(sizes)
+    order = np.argsort(height)
     so_far = np.cumsum(area[order])
     k = np.searchsorted(so_far, np.clip(share, 0.0, 100.0) / 100.0 * so_far[-1])
-    return float(sizes[order[min(k, len(order) - 1)]])
+    return float(height[order[min(k, len(order) - 1)]])
 
 
 def round_up(value: float) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -95,14 +96,19 @@ class Seen:
         most = limits.greatest_factors(result, commands, factors, settings)
         self.greatest = np.maximum(np.minimum(greatest, most), self.least)
         self._thinned = Thinned(result.field, result.job, self.weight)
-        moves = np.diff(self.thinned(self.removed).first.astype(int)) > 0
-        self.moved = moves & ~commands.kept
+        self._removed = self.thinned(self.removed)
+        self.moved = (np.diff(self._removed.first.astype(int)) > 0) & ~commands.kept
 
-    def solver(self, influence: core.Influence) -> tuple[core.Influence, Floats, Floats, Floats]:
-        """(thinned influence, mm from the middle of the band, half the band that is aimed at mm, weights mm2) for the solver."""
+    @cached_property
+    def _influence(self) -> core.Influence:
+        return self.thinned(self.influence)
+
+    def solver(self, in_the_end: bool = True) -> tuple[core.Influence, Floats, Floats, Floats]:
+        """(influence, mm from the middle of the band, half the band that is aimed at mm, weights mm2) for the solver;
+        ``in_the_end``: as later motions leave it, else what each removes itself."""
         thinned, band = self._thinned, sure.band(self.result, self.settings, self.half)
-        kept = thinned.kept
-        return self.thinned(influence), self.deviation[kept], band[kept], thinned.weight
+        kept, influence = thinned.kept, self._influence if in_the_end else self._removed
+        return influence, self.deviation[kept], band[kept], thinned.weight
 
     def thinned(self, influence: core.Influence) -> core.Influence:
         return self._thinned.influence(influence, len(self.half))
@@ -206,7 +212,7 @@ def _feeds_first(
         solver.update(HURRIED)
         costs = time_cost * pace.now
     found = core.plan_dwell(
-        *seen.solver(seen.influence),
+        *seen.solver(),
         fastest,
         slowest,
         1.0 / seen.feeds,
@@ -232,7 +238,7 @@ def _feeds_and_one_force(seen: Seen, reach: float, context: core.RunContext) -> 
     low, high = max(least, now / most), min(greatest, now * most)
     tried = {now, *np.geomspace(min(low, high), high, HAND_TRIES).tolist()}
     solver = {"smoothing": settings["smoothing"], "accuracy": with_force.ACCURACY}
-    influence, deviation, half, weight = seen.solver(seen.influence)
+    influence, deviation, half, weight = seen.solver()
     tries: list[tuple[float, float, Floats, dict[str, Any]]] = []
     for factor in sorted(one for one in tried if least - SAME <= one <= greatest + SAME):
         stronger = (factor / now) ** seen.alpha
@@ -265,7 +271,7 @@ def _feeds_and_forces(seen: Seen, reach: float, context: core.RunContext) -> Ste
     most = min(settings["most_change"], with_force.MOST_TIME) ** reach
     strongest = min(settings["most_change"], with_force.MOST_FORCE) ** reach
     # Of these, what each removes itself: for both at once the wider columns take several times as long, and lead no further.
-    influence, deviation, half, weight = seen.solver(seen.removed)
+    influence, deviation, half, weight = seen.solver(in_the_end=False)
     longer, stronger, found = with_force.solve(
         influence,
         seen.thinned(seen.by_force()),

@@ -47,18 +47,27 @@ def figures(job: Job, field: core.HeightField) -> dict[str, Json]:
     if not areas.sum() > 0.0:
         return {}
     coarse = error > least(job, field)[ground]
-    order = np.argsort(error)
-    above = np.searchsorted(np.cumsum(areas[order]), 0.95 * areas.sum())
     lower, upper = (limit[ground] for limit in verdicts.limits(job, field))
     height = np.asarray(field.height)[ground]
     nearest = np.minimum(abs(height - lower), abs(height - upper))
     told = {
-        "p95": float(error[order][min(above, len(error) - 1)]),
+        "p95": p95(field),
         "max": float(error.max()),
         "coarse_area_share": _share(areas, coarse),
         "undecided_area_share": _share(areas, nearest <= error),
     }
     return {"cell_error_mm": told}
+
+
+def p95(field: core.HeightField) -> float:
+    """mm that 95 % of the ground area keep to; 0 where nothing was ground, or no errors are known."""
+    ground = _ground(field) & (len(field.height_error) > 0)
+    if not ground.any():
+        return 0.0
+    error, areas = np.asarray(field.height_error)[ground], np.asarray(field.areas, float)[ground]
+    order = np.argsort(error)
+    above = np.searchsorted(np.cumsum(areas[order]), 0.95 * areas.sum())
+    return float(error[order][min(above, len(error) - 1)])
 
 
 def least(job: Job, field: core.HeightField) -> Floats:

@@ -76,7 +76,9 @@ def _unknown(mode: str, out_of_date: bool) -> Spec:
         shown.ROUGHNESS: translate(
             "BeltGrinding", "not known anywhere: the belt or its wear was not measured"
         ),
-        shown.CELL_ERROR: translate("BeltGrinding", "not known: this run estimated none"),
+        shown.CELL_ERROR: translate(
+            "BeltGrinding", "not known: simulate again; a rigid tool has none"
+        ),
     }
     grey = int(core.colour_scale(-1.0, 1.0, 2.0, [np.nan])[0])
     marks = (Mark(grey, reasons[mode]),)

@@ -103,7 +103,7 @@ def full(data: Json, until: End, tried: Tried, settings: Json, zones: Zones | No
     laid = by_rules.lay(data, tried.wanted, settings, core.RunContext(), zones)
     settings = {**settings, "goal": "tolerance", "levels": 0, "check": False}
     job = resolution.applied(
-        resolution.with_mode(by_rules.with_path(data, laid), resolution.COARSE), []
+        resolution.with_mode(by_rules.evenly(by_rules.with_path(data, laid)), resolution.COARSE), []
     )
     plan = rounds.plan(job, settings, start=tried.start, over=until.passed)
     share = max(by_rules.share(one) for one in plan.rounds)

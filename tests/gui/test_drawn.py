@@ -256,7 +256,7 @@ def test_the_error_of_the_cells_has_colours_a_legend_and_a_figure():
     deviation.ViewObject.Proxy.doubleClicked(deviation.ViewObject)
     settle()
     table = field("statistics")
-    assert "Error of the cells, 95 %" in [table.item(i, 0).text() for i in range(table.rowCount())]
+    assert "Cell error, 95 %" in [table.item(i, 0).text() for i in range(table.rowCount())]
     press("OK")
 
 

@@ -136,7 +136,7 @@ class DeviationPanel(Panel):
                 ),
             )
         if obj.CellError95.Value > 0.0:
-            name = translate("BeltGrinding", "Error of the cells, 95 %")
+            name = translate("BeltGrinding", "Cell error, 95 %")
             rows += ((name, mm(obj.CellError95, "")),)
         if obj.GreatestTemperature > 0.0:  # never without its range
             most = f"{figure(obj.GreatestTemperatureAtMost, '.0f')} °C"

@@ -153,7 +153,6 @@ def describe(reading: Json) -> list[str]:
     low, high = reading["segment"]
     return [
         f"{deviation}: {verdict}",
-        *cells,
         translate("BeltGrinding", "removed")
         + f" {told(reading['removed'], sign='')} "
         + translate("BeltGrinding", "of")
@@ -161,6 +160,7 @@ def describe(reading: Json) -> list[str]:
         where,
         translate("BeltGrinding", "segment") + f" {told(low)} ... {told(high)}",
         place,
+        *cells,
     ]
 
 

@@ -11,16 +11,29 @@
 namespace beltgrinding {
 namespace {
 
-using StepBits = std::array<std::uint64_t, 24>;
+using StepBits = std::array<std::uint64_t, 30>;
 
 /// The bits of all numbers of a step; does not compile where a step has got more.
 StepBits bits(const PathStep& step) {
     static_assert(sizeof(Frame) == 16 * sizeof(double));
-    const auto& [work_from_contact, time, duration, feed, force, pose, plunging, begin, end] = step;
+    const auto& [work_from_contact, time, duration, feed, force, pose, plunging, begin, end, moved,
+                 turned] = step;
     StepBits values{};
     std::memcpy(values.data(), work_from_contact.data(), sizeof(Frame));
-    const std::array<double, 8> rest = {
-        time, duration, feed, force, static_cast<double>(pose), plunging ? 1.0 : 0.0, begin, end};
+    const std::array<double, 14> rest = {time,
+                                         duration,
+                                         feed,
+                                         force,
+                                         static_cast<double>(pose),
+                                         plunging ? 1.0 : 0.0,
+                                         begin,
+                                         end,
+                                         moved.x(),
+                                         moved.y(),
+                                         moved.z(),
+                                         turned.x(),
+                                         turned.y(),
+                                         turned.z()};
     std::transform(rest.begin(), rest.end(), values.begin() + 16,
                    [](double value) { return std::bit_cast<std::uint64_t>(value); });
     return values;

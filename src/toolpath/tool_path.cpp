@@ -223,6 +223,9 @@ void ToolPath::append_steps(std::size_t i, double begin, double end, int parts, 
         }
         const Vec3 moved = next.translation() - previous.translation();
         const double along = std::abs(moved.dot(step.work_from_contact.linear().col(2)));
+        step.moved = step.work_from_contact.linear().transpose() * moved;
+        const Eigen::AngleAxisd turn(next.linear() * previous.linear().transpose());
+        step.turned = step.work_from_contact.linear().transpose() * (turn.axis() * turn.angle());
         step.feed = moved.norm() / step.duration;
         step.plunging = 2.0 * along * along > moved.squaredNorm();
         step.force = force;

@@ -90,6 +90,8 @@ struct PathStep {
                              ///< the surface, or leaves it
     double begin = 0.0;      ///< share of the motion's way at which the step begins, [0, 1]
     double end = 1.0;        ///< share of the motion's way at which it ends
+    Vec3 moved = Vec3::Zero();   ///< mm, from the step's begin to its end, in the contact's frame
+    Vec3 turned = Vec3::Zero();  ///< rad, the same
 };
 
 /// How finely a path is stepped through.

@@ -76,6 +76,7 @@ void ComplianceOperator::apply_covered(const Eigen::ArrayXd& pressure,
     fit(displacement, working_.cells());
     if (local()) {
         do_apply(pressure, displacement);  // of the part that is covered: a spring to each point
+        if (recession_ > 0.0) displacement += recession_ * pressure;
         return;
     }
     fit(load_, working_.cells());
@@ -83,6 +84,7 @@ void ComplianceOperator::apply_covered(const Eigen::ArrayXd& pressure,
     edges_.place(load_);
     do_apply(load_, displacement);
     edges_.sink(displacement);
+    if (recession_ > 0.0) displacement += recession_ * pressure;
 }
 
 void ComplianceOperator::work_on_columns(int count) {

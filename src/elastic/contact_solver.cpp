@@ -149,10 +149,10 @@ void ConstrainedConjugateGradients::start_from(const Eigen::ArrayXd* start) {
     if (!problem_.force_control) {
         // Every cell as a spring of its own: exact for a foundation and a rigid robot, a fair guess
         // otherwise.
-        pressure_ = reachable_ * (problem_.approach - gap_).max(0.0) / compliance_.diagonal();
+        pressure_ = reachable_ * (problem_.approach - gap_).max(0.0) / compliance_.softness();
         return;
     }
-    press_foundation(compliance_.diagonal());
+    press_foundation(compliance_.softness());
     if (compliance_.local()) return;
     // The cells press on one another: once more with springs as soft as they are together.
     compliance_.apply_covered(pressure_, problem_.coverage, displacement_);
@@ -284,7 +284,7 @@ double ConstrainedConjugateGradients::error() {
     });
     norm_ = norm;
     along_last_ = along_last;
-    const double length = length_ > 0.0 ? length_ : 1.0 / compliance_.diagonal();
+    const double length = length_ > 0.0 ? length_ : 1.0 / compliance_.softness();
     return length * (off + overlap_) / std::max<double>(force, 1e-300);
 }
 
@@ -337,7 +337,7 @@ void ConstrainedConjugateGradients::step() {
     // Cells that overlap without pressure come into contact.
     if (overlap_ > 0.0) {
         stale_ = restart_ = true;
-        const double softness = length > 0.0 ? length : 1.0 / compliance_.diagonal();
+        const double softness = length > 0.0 ? length : 1.0 / compliance_.softness();
         for_all([&](auto i) {
             const auto beside = at(reachable_, i) - at(contact_, i);
             put(pressure_, i, at(pressure_, i) - softness * beside * below_zero(at(residual_, i)));
@@ -432,6 +432,18 @@ struct Columns {
     static constexpr double kWorthwhile = 0.8;  // of the grid
 };
 
+/// While it lives, a recession is another one.
+class Receding {
+  public:
+    Receding(double& recession, double now) : recession_(recession) { recession = now; }
+    ~Receding() { recession_ = 0.0; }
+    Receding(const Receding&) = delete;
+    Receding& operator=(const Receding&) = delete;
+
+  private:
+    double& recession_;
+};
+
 }  // namespace
 
 ContactSolution ComplianceOperator::solve_columns(const ContactProblem& problem,
@@ -483,6 +495,7 @@ bool ComplianceOperator::goes_on_beyond(const ContactProblem& problem,
 
 ContactSolution ComplianceOperator::do_solve(const ContactProblem& problem,
                                              const Eigen::ArrayXd* start) {
+    const Receding receding(recession_, problem.recession);
     if (local()) return ConstrainedConjugateGradients(problem, grid(), *this).solve(start);
     const int nx = grid().nx;
     Eigen::ArrayXd pressure;

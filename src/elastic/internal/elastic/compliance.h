@@ -39,6 +39,8 @@ class ComplianceOperator : public PreparedContact {
     EdgeSoftness edge_softness() const final { return edges_.softness(); }
     /// An estimate of the diagonal of C at full coverage, mm/MPa: scales the solver's first step.
     virtual double diagonal() const = 0;
+    /// The same of what a cell gives way while a contact is solved, with the problem's recession.
+    double softness() const { return diagonal() + recession_; }
     /// True if a cell's displacement depends on its own pressure only.
     virtual bool local() const { return false; }
 
@@ -70,6 +72,7 @@ class ComplianceOperator : public PreparedContact {
     /// kappa, from how much less the neighbour of a pressed line of cells sinks in.
     EdgeSoftness find_edge_softness();
 
+    double recession_ = 0.0;  // mm/MPa, of the problem that is solved
     ContactGrid working_;
     EdgeLoads edges_;
     Eigen::ArrayXd load_, displacement_;

@@ -1,6 +1,7 @@
 #include "engine/grinding.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "actuated_wheel.h"
 #include "base/stopwatch.h"
@@ -10,7 +11,8 @@ namespace {
 
 // Explicit integration in time: in one go the surface may recede by this share of the wheel's
 // indentation, so that the pressure follows the removal.
-constexpr double kRecession = 0.1;
+constexpr double kRecession = 0.25;
+constexpr double kMiddle = 0.5;          // of a part's time: a wheel's pressure is that then
 constexpr int kMaxParts = 200;           // of a step
 constexpr double kJoule = 1e-3;          // of a N mm
 constexpr double kUsualPressure = 0.05;  // MPa, of a belt that has not touched yet
@@ -43,7 +45,8 @@ double Grinding::set_rate(const PathStep& step) {
 }
 
 void Grinding::expect(const PathStep& step, double duration) {
-    if (!pressing_.flat()) return;
+    if (pressing_.rigid()) return;
+    if (!pressing_.flat()) duration *= kMiddle;
     const ContactSolution& contact = pressing_.solution();
     const double area = contact.area > 0.0 ? contact.area : 1.0;
     Eigen::ArrayXd pressure(1), rate;
@@ -68,12 +71,19 @@ double Grinding::grind(const PathStep& step, double share) {
     double volume = 0.0;
     double left = step.duration;
     const double least = step.duration / (share * kMaxParts);
+    double expected = left;  // s, by what it was pressed
     while (left > 0.0) {
-        const double part = holds(left, least);
-        volume += remove(part);
+        double part = holds(left, least);
+        if (part < expected && !pressing_.flat()) {
+            expect(step, part);
+            if (!press_again(step)) break;
+            part = std::min(holds(left, least), left);
+        }
+        volume += remove(step, part);
         left -= part;
         if (left <= 1e-12 * step.duration) break;
-        expect(step, left);
+        expected = pressing_.flat() ? left : std::min(left, part);
+        expect(step, expected);
         if (!press_again(step)) break;
         deepest_ = std::max(deepest_, pressing_.approach());
     }
@@ -94,7 +104,7 @@ double Grinding::grind(const PathStep& step, double share, ActuatedWheel& wheel)
             part = std::clamp(wheel.longest(left, step.force), std::min(least, left), left);
         if (pressed()) part = holds(part, std::min(least, part));
         wheel.begin(part, step.force);
-        expect(step, part);
+        expect(step, pressing_.flat() ? part : part / ForceActuator::kStages);
         for (int stage = 0; stage < ForceActuator::kStages; ++stage) {
             const double time = part * wheel.press_stage(blocks_);
             if (!pressed()) {
@@ -102,7 +112,7 @@ double Grinding::grind(const PathStep& step, double share, ActuatedWheel& wheel)
                 continue;
             }
             set_rate(step);
-            volume += remove(time);
+            volume += remove(step, time);
             deepest_ = std::max(deepest_, pressing_.approach());
             greatest_force_ = std::max(greatest_force_, pressing_.solution().force);
         }
@@ -160,7 +170,7 @@ void Grinding::rest(double seconds) {
     now_.clock += seconds;
 }
 
-double Grinding::remove(double part) {
+double Grinding::remove(const PathStep& step, double part) {
     note_reach();
     const bool loads = process_.wear.loads();
     const BeltState belt = loads ? load(part) : now_.belt;
@@ -168,7 +178,9 @@ double Grinding::remove(double part) {
     GapMap& map = pressing_.map();
     const ContactSolution& contact = pressing_.solution();
     Eigen::ArrayXd most, most_beside(beside_.size());
-    double removed = 0.0;
+    Sweep sweep;
+    if (!pressing_.flat()) sweep = {step.moved, step.turned};
+    double removed = 0.0, scale = 1.0;
     {
         const Stopwatch watch(times_.removal);
         // No cell recedes below the unloaded wheel, however far beyond reason the force is.
@@ -179,10 +191,15 @@ double Grinding::remove(double part) {
             most_beside << most.head(columns), most.tail(columns);
             beside_ = beside_.min(most_beside);
         }
-        removed = map.remove(blocks_, rate_, beside_, part, contact.approach);
+        const double within = map.volume_rate(rate_, {});
+        rate_ = map.mean_over(sweep, rate_);
+        if (const double mean = map.volume_rate(rate_, {}); mean > 0.0) scale = within / mean;
+        rate_ *= scale;
+        removed = map.remove(blocks_, rate_, beside_, part, contact.approach,
+                             0.5 * std::abs(sweep.moved.x()));
     }
-    recorders_.tell(&Recorder::removed,
-                    Removal{pressing_, state_, rate_, beside_, most, most_beside, part, belt});
+    recorders_.tell(&Recorder::removed, Removal{pressing_, state_, rate_, beside_, most,
+                                                most_beside, part, sweep, scale, belt});
     impulse_ += contact.force * part;
     const double work = kJoule * pressing_.pressing_force() * process_.belt_speed * part;
     now_.belt.work += work;

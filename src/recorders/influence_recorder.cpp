@@ -185,7 +185,7 @@ void ForceInfluenceRecorder::removed(const Removal& removal) {
     rate_under(law_, pressure, state, pressed_, beside_);
     const GapMap& map = removal.pressing.map();
     const Eigen::ArrayXd most = (stronger.approach - map.gap()).max(0.0) / removal.duration;
-    pressed_ = pressed_.min(most);
+    pressed_ = removal.mean(pressed_.min(most));
     if (beside_.size() > 0) {
         const Eigen::Index columns = map.grid().nx;
         beside_.head(columns) = beside_.head(columns).min(most.head(columns));

@@ -27,7 +27,7 @@ void ShiftRecorder::removed(const Removal& removal) {
             state.belt_wear = process_.belt_wear * laws_[k].wear->remaining(removal.belt);
         rate_under(*laws_[k].law, pressure, state, rate_, beside_);
         auto shift = shifts_.col(static_cast<Eigen::Index>(k));
-        removal.pressing.map().for_samples(rate_.min(removal.most) - removal.rate,
+        removal.pressing.map().for_samples(removal.mean(rate_.min(removal.most)) - removal.rate,
                                            beside_.min(removal.most_beside) - removal.beside,
                                            removal.duration,
                                            [&](std::size_t position, double amount) {

@@ -30,8 +30,9 @@ class Grinding final : public Keeps<Latest<GrindingMemory>> {
     Grinding(SampleBlocks& blocks, Pressing& pressing, const RemovalLaw& law,
              const ProcessSettings& process, Recorders& recorders);
 
-    /// Tells a belt, before it is pressed, how much of the surface the law takes under its pressure
-    /// in `duration` s: about as much as at the last pose.
+    /// Tells what is pressed next, before it is, how much of the surface the law takes under its
+    /// pressure in `duration` s, or a wheel, in half of that: so its pressure is that on the
+    /// surface as it is at the middle of the time. About as much as at the last pose.
     void expect(const PathStep& step, double duration);
     /// mm that the law takes during one step at the wheel's deepest place as it is pressed now, if
     /// the wheel follows the surface; one that stands cannot grind deeper than it stands: 0.
@@ -76,7 +77,7 @@ class Grinding final : public Keeps<Latest<GrindingMemory>> {
     double holds(double left, double least) const;
     /// Removes for `part` s what the law says of the wheel as it is pressed. Returns the volume,
     /// mm3.
-    double remove(double part);
+    double remove(const PathStep& step, double part);
     /// What the unloaded belt and the mean cut of the loading one would remove in `part` s: the
     /// belt as it is, its loading that of the mean. Sets the rates to it.
     BeltState load(double part);

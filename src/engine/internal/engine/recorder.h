@@ -47,7 +47,14 @@ struct Removal {
     const Eigen::ArrayXd& most;    ///< mm/s per cell, that was left to remove
     const Eigen::ArrayXd& most_beside;
     double duration;        ///< s
+    const Sweep& sweep;     ///< of the step, of which `rate` is the mean
+    double scale;           ///< of that mean, so that the volume is as at the step's middle
     const BeltState& belt;  ///< at its begin, but for the loading: of the mean cut over it
+
+    /// Other rates at the step's middle as `rate` is, mm/s per cell.
+    Eigen::ArrayXd mean(const Eigen::ArrayXd& at_middle) const {
+        return scale * pressing.map().mean_over(sweep, at_middle);
+    }
 };
 
 /// A step is over.

@@ -1,7 +1,6 @@
 #include "engine/grinding.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "actuated_wheel.h"
 #include "base/stopwatch.h"
@@ -195,8 +194,7 @@ double Grinding::remove(const PathStep& step, double part) {
         rate_ = map.mean_over(sweep, rate_);
         if (const double mean = map.volume_rate(rate_, {}); mean > 0.0) scale = within / mean;
         rate_ *= scale;
-        removed = map.remove(blocks_, rate_, beside_, part, contact.approach,
-                             0.5 * std::abs(sweep.moved.x()));
+        removed = map.remove(blocks_, rate_, beside_, part, contact.approach);
     }
     recorders_.tell(&Recorder::removed, Removal{pressing_, state_, rate_, beside_, most,
                                                 most_beside, part, sweep, scale, belt});

@@ -131,11 +131,10 @@ double GapMap::volume_rate(const Eigen::ArrayXd& rate, const Eigen::ArrayXd& bes
 }
 
 double GapMap::remove(SampleBlocks& blocks, const Eigen::ArrayXd& rate,
-                      const Eigen::ArrayXd& beside, double duration, double approach,
-                      double slide) {
+                      const Eigen::ArrayXd& beside, double duration, double approach) {
     const double volume = volume_rate(rate, beside) * duration;
     if (!(volume > 0.0)) return 0.0;
-    return removal_.remove(placed_, blocks, grid_, {rate, beside, duration, slide}, volume, approach);
+    return removal_.remove(placed_, blocks, grid_, {rate, beside, duration}, volume, approach);
 }
 
 void GapMap::raise(const DisplacedPressure& pressure, std::span<float> largest) const {

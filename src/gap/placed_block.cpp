@@ -345,16 +345,13 @@ double volume_of(const float* values, const float* area) {
 }
 
 BELTGRINDING_CLONES
-Standing stand_off(const PlacedBlock& placed, const float* lowering, const Envelope& envelope) {
-    const auto [approach, bent, room, rise, columns, middle] = envelope;
+Standing stand_off(const PlacedBlock& placed, const float* lowering, float approach, float bent,
+                   float room) {
     Standing result{0, 0, 0};
     for (int first = 0; first < kBlockLanes; first += kWide) {
         const Floats asked = load(lowering + first);
-        const Ints column = load(placed.cell + first) - load(placed.row + first) * columns - middle;
-        const Floats away =
-            magnitude(__builtin_convertvector(column, Floats) + load(placed.u + first));
         const Floats overlap =
-            approach * load(placed.facing + first) - load(placed.own_gap + first) + rise * away;
+            approach * load(placed.facing + first) - load(placed.own_gap + first);
         const Ints some = asked > 0.0f;
         const Ints free = some & (overlap - bent >= room * asked);
         const Ints onto = some & (overlap <= 0.0f);

@@ -38,8 +38,7 @@ double SampleRemoval::ask(const PlacedSamples& placed, const SampleBlocks& block
 }
 
 void SampleRemoval::look_at_block(const PlacedSamples& placed, const SampleBlocks& blocks,
-                                  std::size_t k, const ContactGrid& grid, double approach,
-                                  double rise, Held& held) {
+                                  std::size_t k, double approach, Held& held) {
     const PlacedBlock& block = placed.regular()[k];
     const WheelPose& pose = placed.pose();
     const double bent = approach * approach / pose.wheel().radius;
@@ -47,11 +46,8 @@ void SampleRemoval::look_at_block(const PlacedSamples& placed, const SampleBlock
     const double room = (1.0 + pose.steepest_flank()) * kLargestScale;
     const float* lowering = &lowering_[k * kBlockLanes];
     const float* area = blocks.block(block.block).area.data();
-    const int middle = (grid.nx - 1) / 2;
-    const Standing standing =
-        stand_off(block, lowering,
-                  {static_cast<float>(approach), static_cast<float>(bent), static_cast<float>(room),
-                   static_cast<float>(rise * grid.ds), grid.nx, middle});
+    const Standing standing = stand_off(block, lowering, static_cast<float>(approach),
+                                        static_cast<float>(bent), static_cast<float>(room));
     free_[k] = standing.free;
     held.any = held.any || standing.onto != 0;
     double of_free = volumes_[k];
@@ -61,9 +57,7 @@ void SampleRemoval::look_at_block(const PlacedSamples& placed, const SampleBlock
         of_free -= asked * area[lane];
         if ((standing.onto >> lane & 1U) != 0) continue;
         const Footprint f = PlacedSamples::in_block(blocks, block, lane);
-        const double away = std::abs(block.cell[lane] % grid.nx - middle + block.u[lane]) * grid.ds;
-        const double down = pose.down_to_envelope(blocks, f, approach + rise * away / f.facing,
-                                                  kLargestScale * asked);
+        const double down = pose.down_to_envelope(blocks, f, approach, kLargestScale * asked);
         limited_.emplace_back(k * kBlockLanes + static_cast<std::size_t>(lane), down);
         const bool holds = down < scale_ * asked;
         held.any = held.any || holds;
@@ -73,14 +67,13 @@ void SampleRemoval::look_at_block(const PlacedSamples& placed, const SampleBlock
 }
 
 void SampleRemoval::look_at_footprints(const PlacedSamples& placed, const SampleBlocks& blocks,
-                                       double approach, double rise, Held& held) {
+                                       double approach, Held& held) {
     const auto footprints = placed.footprints();
     room_.assign(footprints.size(), 0.0);
     for (std::size_t k = 0; k < footprints.size(); ++k) {
         if (asked_[k] <= 0.0) continue;
         const Footprint& f = footprints[k];
-        const double reach = approach + rise * std::abs(f.s) / f.facing;
-        room_[k] = placed.pose().down_to_envelope(blocks, f, reach, kLargestScale * asked_[k]);
+        room_[k] = placed.pose().down_to_envelope(blocks, f, approach, kLargestScale * asked_[k]);
         const double most = std::min(room_[k], scale_ * asked_[k]);
         const bool holds = most < scale_ * asked_[k];
         held.any = held.any || holds;
@@ -106,14 +99,12 @@ double SampleRemoval::remove(PlacedSamples& placed, SampleBlocks& blocks, const 
     const double unscaled = ask(placed, blocks, grid, asked);
     if (!(unscaled > 0.0)) return 0.0;
     scale_ = std::min(volume / unscaled, kLargestScale);
-    // Round the wheel the gap falls by that while it goes by.
-    const double rise = asked.slide / placed.pose().wheel().radius;
     Held held;
     limited_.clear();
     free_.assign(count, 0);
     for (std::size_t k = 0; k < count; ++k)
-        if (active_[k] != 0) look_at_block(placed, blocks, k, grid, approach, rise, held);
-    look_at_footprints(placed, blocks, approach, rise, held);
+        if (active_[k] != 0) look_at_block(placed, blocks, k, approach, held);
+    look_at_footprints(placed, blocks, approach, held);
     const double wanted = scale_ * unscaled;
     double more = 1.0;
     if (held.any && held.free > 0.0)

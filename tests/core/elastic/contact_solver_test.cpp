@@ -109,6 +109,7 @@ TEST(ContactSolver, KeepsTheSignoriniConditionsOnRandomContacts) {
         problem.force_control = trial % 2 == 0;
         problem.force = 5.0 + 40.0 * uniform(random);
         problem.approach = 0.1 + 0.3 * uniform(random);
+        problem.recession = trial % 4 < 2 ? 0.0 : 0.5 * uniform(random);
         const auto foundation = ElasticFoundation(0.3 + uniform(random)).compliance(grid);
         SmoothCompliance smooth(grid);
         for (ComplianceOperator* compliance :
@@ -128,12 +129,30 @@ TEST(ContactSolver, KeepsTheSignoriniConditionsOnRandomContacts) {
                     EXPECT_EQ(solution.pressure[c], 0.0);
                     continue;
                 }
-                const double open = problem.gap[c] + u[c] - solution.approach;
+                const double open = problem.gap[c] + u[c] - solution.approach +
+                                    problem.recession * solution.pressure[c];
                 EXPECT_GE(open, -1e-5);
                 EXPECT_LT(solution.pressure[c] * std::max(open, 0.0), 1e-5);
             }
         }
     }
+}
+
+TEST(ContactSolver, ASurfaceThatRecedesMakesSpringsSofter) {
+    const ContactGrid grid = rows_of(65, 0.4);
+    ContactProblem problem = parabola(grid, 60.0);
+    problem.force = 40.0;
+    problem.tolerance = 1e-9;
+    const auto prepared = ElasticFoundation(0.5).prepare(grid);
+    problem.recession = 0.7;  // mm/MPa
+    const ContactSolution receding = prepared->solve(problem);
+    problem.recession = 0.0;  // of the next contact: it is not kept
+    const ContactSolution still = prepared->solve(problem);
+    const ContactSolution softer =
+        ElasticFoundation(1.0 / (1.0 / 0.5 + 0.7)).prepare(grid)->solve(problem);
+    EXPECT_LT((receding.pressure - softer.pressure).abs().maxCoeff(), 1e-7);
+    EXPECT_NEAR(receding.approach, softer.approach, 1e-7);
+    EXPECT_GT(still.pressure.maxCoeff(), 1.1 * softer.pressure.maxCoeff());
 }
 
 // A start may be pressed elsewhere than the contact is: on columns that lie beside it, or on some

@@ -259,7 +259,7 @@ TEST(Checkpoints, AreSoundAfterACancel) {
     SimulationOptions options = s.options;
     options.outputs.checkpoints = &kept;
     const RunContext context;
-    const CancellingLaw law({s.coefficient}, context, 60);
+    const CancellingLaw law({s.coefficient}, context, 120);
     EXPECT_THROW(simulate(field, ToolPath(poses, {}), s.model(), law, options, context), Cancelled);
     EXPECT_EQ(field.height, s.field().height);
     EXPECT_LT(context.progress(), 0.3);  // of what there was left to do

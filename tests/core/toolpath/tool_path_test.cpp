@@ -40,6 +40,19 @@ TEST(ToolPath, InterpolatesPositionLinearlyAndOrientationBySlerp) {
     }
 }
 
+TEST(ToolPath, AStepTellsHowTheContactMovesFromItsBeginToItsEnd) {
+    const ToolPath path({pose_at(0, 0, 0), pose_at(10, 4, 2, 10.0, 0.6)}, {});
+    const auto steps = path.steps({2.0, 0.5, 50.0});
+    for (std::size_t k = 0; k < steps.size(); ++k) {
+        const Frame& middle = steps[k].work_from_contact;
+        const Vec3 way = (path.base_from_tcp(1, steps[k].end).translation() -
+                          path.base_from_tcp(1, steps[k].begin).translation());
+        EXPECT_LT((middle.linear() * steps[k].moved - way).norm(), 1e-12);
+        const double angle = 0.6 * (steps[k].end - steps[k].begin);
+        EXPECT_LT((steps[k].turned - angle * Vec3(1, 2, 2).normalized()).norm(), 1e-9);
+    }
+}
+
 TEST(ToolPath, AStepIsCutIntoStepsOfTheSameWayAndTime) {
     for (const auto timing : {TimeLaw::Timing::kConstantFeed, TimeLaw::Timing::kTrapezoidal}) {
         TimeLaw law;

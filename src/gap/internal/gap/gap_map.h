@@ -101,10 +101,9 @@ class GapMap {
     /// (`volume_rate` x duration) to rounding. No sample falls below the envelope of
     /// the undeformed wheel, moved by `approach` (mm, along the contact frame's z) from where the
     /// map was taken; what that keeps back is taken from the others, as far as they stand above it.
-    /// Returns the volume, mm3. `blocks`: those of the last update. `slide`: mm that the wheel
-    /// passes along its travel before and after the place of the map; the envelope is of all that.
+    /// Returns the volume, mm3. `blocks`: those of the last update.
     double remove(SampleBlocks& blocks, const Eigen::ArrayXd& rate, const Eigen::ArrayXd& beside,
-                  double duration, double approach, double slide = 0.0);
+                  double duration, double approach);
     /// mm3/s, or others of the cells, as they are on the mean over the step: `Sweep::mean`.
     Eigen::ArrayXd mean_over(const Sweep& sweep, const Eigen::ArrayXd& values) const {
         return sweep.mean(grid_, placed_.pose().wheel().radius, coverage(), values);

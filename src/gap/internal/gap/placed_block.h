@@ -122,14 +122,9 @@ struct Standing {
     std::uint64_t onto;    // not at all: on the envelope, or out of it
     std::uint64_t unsure;  // to be looked at one by one
 };
-/// The wheel's envelope over a block's lanes.
-struct Envelope {
-    float approach, bent;  // mm
-    float room;            // times the lowering
-    float rise;            // mm by which it comes nearer, by each column from the middle one
-    int columns, middle;   // of the grid
-};
-Standing stand_off(const PlacedBlock& placed, const float* lowering, const Envelope& envelope);
+/// `approach` and `bent`: mm, of the envelope; `room`: times the lowering.
+Standing stand_off(const PlacedBlock& placed, const float* lowering, float approach, float bent,
+                   float room);
 
 /// Lowers `height` (mm) by `factor` times `lowering` in `lanes`. Gives the block's lowest and
 /// highest height, and the volume taken, mm3.

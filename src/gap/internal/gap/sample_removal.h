@@ -20,8 +20,7 @@ class SampleRemoval {
     struct Asked {
         const Eigen::ArrayXd& rate;
         const Eigen::ArrayXd& beside;
-        double duration;     ///< s
-        double slide = 0.0;  ///< mm along s, as of `GapMap::remove`
+        double duration;  ///< s
     };
 
     /// Samples were placed anew: none was kept back.
@@ -68,9 +67,9 @@ class SampleRemoval {
                const Asked& asked);
     /// How far each sample may be lowered: lanes of a block; footprints.
     void look_at_block(const PlacedSamples& placed, const SampleBlocks& blocks, std::size_t k,
-                       const ContactGrid& grid, double approach, double rise, Held& held);
+                       double approach, Held& held);
     void look_at_footprints(const PlacedSamples& placed, const SampleBlocks& blocks,
-                            double approach, double rise, Held& held);
+                            double approach, Held& held);
     /// Notes that free samples give `more` times what was asked for.
     void note_taken(double more);
     /// Lowers by `factor` times what is asked for; the volume, mm3.

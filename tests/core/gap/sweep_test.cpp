@@ -48,7 +48,7 @@ TEST(Sweep, IsTheMeanOfStampsAlongTheWay) {
             const double share = (k + 0.5) / kStamps - 0.5;
             stamps += hump(grid, 24 + share * moved.x(), 24 + share * moved.y(), 9.0) / kStamps;
         }
-        EXPECT_NEAR(mean.sum(), values.sum(), 1e-9 * values.sum());
+        EXPECT_NEAR(mean.sum(), values.sum(), 1e-7 * values.sum());
         // Of the sum: what it is between cells is as if straight.
         EXPECT_LT((mean - stamps).abs().sum(), 0.02 * values.sum());
         EXPECT_GT((values - stamps).abs().sum(), 0.06 * values.sum());
@@ -83,7 +83,8 @@ TEST(Sweep, StopsAtEdges) {
             EXPECT_EQ(mean[cell], values[cell]);
         }
     }
-    EXPECT_GT(mean[4 * grid.nx + 10], values[4 * grid.nx + 10]);  // what falls off evenly is swept
+    EXPECT_EQ(values[4 * grid.nx + 8], 0.0);
+    EXPECT_GT(mean[4 * grid.nx + 8], 0.0);  // far from the edge it is swept
 }
 
 }  // namespace

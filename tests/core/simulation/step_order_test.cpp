@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "beltgrinding/simulation.h"
-#include "elastic/compliance.h"
+#include "elastic/wheel_rim.h"
 #include "support/poses.h"
 #include "support/synthetic_field.h"
 
@@ -14,7 +14,7 @@ namespace {
 
 using testing::pressing_down;
 
-constexpr double kCoefficient = 1e-4;  // mm2/N
+constexpr double kCoefficient = 2e-5;  // mm2/N
 constexpr double kStock = 0.4;         // mm
 
 SimulationOptions options(double travel) {
@@ -33,17 +33,25 @@ struct Ground {
 
 Ground ground(const ToolPath& path, const SimulationOptions& o) {
     HeightField field = testing::plate(70.0, 40.0, 0.4, kStock);
-    const ElasticFoundation foundation(0.3);
-    const SimulationResult result = simulate(field, path, foundation, LocalLaw({kCoefficient}), o);
+    WheelRimDesign design;
+    design.outer_radius = 40.0;
+    design.width = 16.0;
+    design.layers = {{15.0, {5.0, 0.45}}};
+    const WheelRim rim(design);
+    const SimulationResult result = simulate(field, path, rim, LocalLaw({kCoefficient}), o);
     return {std::move(field), result.removed_volume};
 }
 
-/// Of what is removed, what is so elsewhere, L1.
+/// Of what is removed, what is so elsewhere, L1, off the ends of the passes.
 double off(const Ground& one, const Ground& reference) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < one.field.size(); ++i)
-        sum += std::abs(one.field.height[i] - reference.field.height[i]) * one.field.area[i];
-    return sum / reference.volume;
+    double sum = 0.0, removed = 0.0;
+    for (std::size_t i = 0; i < one.field.size(); ++i) {
+        if (std::abs(one.field.point[i].x() - 35.0) > 10.0) continue;
+        const double there = reference.field.height[i];
+        sum += std::abs(one.field.height[i] - there) * one.field.area[i];
+        removed += (kStock - there) * one.field.area[i];
+    }
+    return sum / removed;
 }
 
 /// Three passes side by side, along the belt or across it.
@@ -61,13 +69,14 @@ ToolPath passes(bool across) {
     return ToolPath(poses, {});
 }
 
+// Of first order, with the pressure stamped at the middle of each step on the surface as it was
+// before, the rim's L1 is 0.12, 1.1 and 2.6 % along the belt, and 3.2 % across it.
 TEST(StepOrder, LongStepsRemoveWhatShortOnesDo) {
-    const ToolPath path = passes(false);
-    const Ground fine = ground(path, options(0.25));
-    const double one = off(ground(path, options(1.0)), fine);
-    const double four = off(ground(path, options(4.0)), fine);
-    EXPECT_LT(one, 0.0015);
-    EXPECT_LT(four, 0.01);
+    const Ground fine = ground(passes(false), options(0.25));
+    EXPECT_LT(off(ground(passes(false), options(1.0)), fine), 0.0006);
+    EXPECT_LT(off(ground(passes(false), options(2.0)), fine), 0.0015);
+    EXPECT_LT(off(ground(passes(false), options(4.0)), fine), 0.0045);
+    EXPECT_LT(off(ground(passes(true), options(4.0)), ground(passes(true), options(0.25))), 0.015);
 }
 
 TEST(StepOrder, AWheelThatLandsGrindsForAsLongAsItTouches) {

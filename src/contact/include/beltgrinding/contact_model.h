@@ -50,9 +50,9 @@ struct ContactProblem {
     /// mm/N by which the robot gives way under the contact's force (position control); 0: rigid
     double robot_compliance = 0.0;
     /// mm/MPa by which the surface recedes until the time that the pressure is asked for: an
-    /// abrasive takes what is pressed most first. Of a step, a wheel asks for that at the middle, and
-    /// a belt at the end, which a stiff one needs: its pressure on a cell changes wholly with some
-    /// 1e-4 mm. Surrogates and rigid tools know none.
+    /// abrasive takes what is pressed most first. Of a step, a wheel asks for that at the middle,
+    /// and a belt at the end, which a stiff one needs: its pressure on a cell changes wholly with
+    /// some 1e-4 mm. Surrogates and rigid tools know none.
     double recession = 0.0;
     double tolerance = 1e-4;   ///< relative error of the pressure field, L1
     int max_iterations = 500;  ///< then it has not converged

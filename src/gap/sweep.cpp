@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kMostPairs = 32;
 constexpr double kWhole = 0.99;     // coverage of a cell that no edge crosses
-constexpr double kShortest = 1e-6;  // cells: less is no way
+constexpr double kShortest = 1e-6;  // cells: less is no way, and no place beside a cell's
 
 /// Columns and rows of some cells.
 struct Extent {
@@ -34,9 +34,10 @@ class Between {
 
     /// At a place in cells from the first one; false where an edge, or the wheel's side, is near.
     bool at(double column, double row, double& value) const {
-        const int i = static_cast<int>(std::floor(column)), j = static_cast<int>(std::floor(row));
+        const int i = static_cast<int>(std::floor(column + kShortest));
+        const int j = static_cast<int>(std::floor(row + kShortest));
         const double u = column - i, v = row - j;
-        const int right = u > 0.0 ? 1 : 0, up = v > 0.0 ? 1 : 0;
+        const int right = u > kShortest ? 1 : 0, up = v > kShortest ? 1 : 0;
         if (i < 0 || j < 0 || i + right >= grid_.nx || j + up >= grid_.ny) return false;
         const int a = j * grid_.nx + i, b = a + right, c = a + up * grid_.nx, d = c + right;
         for (const int cell : {a, b, c, d})
@@ -68,7 +69,7 @@ Eigen::ArrayXd Sweep::mean(const ContactGrid& grid, double radius, const Eigen::
         way(grid.s((box.left + box.right) / 2), grid.y((box.low + box.high) / 2), radius);
     const double cells = std::max(std::abs(middle.x()) / grid.ds, std::abs(middle.y()) / grid.dy);
     if (!(cells > kShortest)) return values;
-    const int pairs = std::min(static_cast<int>(std::ceil(cells)), kMostPairs);
+    const int pairs = std::min(static_cast<int>(std::ceil(cells - kShortest)), kMostPairs);
     const int beyond = static_cast<int>(std::ceil(0.5 * cells)) + 1;
     const auto near = [beyond](int from, int to, int count) {
         return std::pair(std::max(from - beyond, 0), std::min(to + beyond, count - 1));

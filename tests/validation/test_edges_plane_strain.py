@@ -52,7 +52,7 @@ def pressed(matrix, overlap, inside):
     raise AssertionError("no end")
 
 
-def reference(radius, step=0.01, times=40):
+def reference(radius, step=0.01, times=160):
     """(points (n, 2), heights (n,), N/mm on the mean) of the edge's section after grinding."""
     angle = np.linspace(-TURN, TURN, 2 * int(radius * TURN / step) + 1)
     nose = radius * np.stack([np.sin(angle), np.cos(angle) - 1], axis=1)
@@ -163,7 +163,7 @@ def difference(result, points, heights):
         # share of the chord loss, of the radius left, of the volume a mm of edge, L1 of the profile
         (1.0, 0.1, 0.15, 0.03, 0.03, 0.04, 0.07),
         (1.0, 0.05, 0.08, 0.01, 0.01, 0.01, 0.025),
-        (0.2, 0.05, 0.08, 0.06, 0.03, 0.04, 0.16),
+        (0.2, 0.05, 0.08, 0.07, 0.01, 0.04, 0.17),  # all but a thousandth of it the cells'
     ),
 )
 def test_an_edge_is_ground_round_as_in_plane_strain(
@@ -185,7 +185,7 @@ def test_an_edge_is_ground_round_as_in_plane_strain(
 
 
 def test_the_reference_has_converged(wedges):
-    coarse, fine = (reference(0.2, step, times) for step, times in ((0.01, 40), (0.005, 80)))
+    coarse, fine = (reference(0.2, step, times) for step, times in ((0.01, 160), (0.005, 320)))
     assert coarse[2] == pytest.approx(fine[2], rel=2e-3)
     assert coarse[1].min() == pytest.approx(fine[1].min(), rel=3e-3)
 

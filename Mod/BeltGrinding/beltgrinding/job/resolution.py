@@ -1,4 +1,4 @@
-"""The coarse mode of a job, for searching: fewer samples on the same contact cells, and looser contacts.
+"""The coarse mode of a job, for searching: fewer samples on the same contact cells, looser contacts, longer steps.
 
 What it changes is small against the tolerance off the edges, and large at them: its figures carry its name, and no
 verdict is given by it alone.
@@ -18,6 +18,7 @@ SAMPLES = (
     0.6  # of the contact's cells, apart: two thirds is the most that leaves the cells as they are
 )
 TOLERANCE = 1e-2  # of the contact
+TRAVEL, ANGLE = 2.0, 2.0  # mm, degrees of a step
 
 
 def mode(job: Job | Json) -> str:
@@ -30,6 +31,18 @@ def mode(job: Job | Json) -> str:
 def with_mode(job: Json, mode: str) -> dict[str, Any]:
     """The job in another mode."""
     return {**job, "resolution": {**job.get("resolution", {}), "mode": mode}}
+
+
+def longer_steps(job: Json) -> dict[str, Any]:
+    """A validated job with the steps of the coarse mode; longer ones stay, as do those of a job with temperatures."""
+    if typed(job).heat is not None:
+        return dict(job)
+    steps = typed(job).simulation
+    longer = {
+        "max_travel_mm": max(steps.max_travel_mm, TRAVEL),
+        "max_angle_deg": max(steps.max_angle_deg, ANGLE),
+    }
+    return {**job, "simulation": {**job["simulation"], **longer}}
 
 
 def applied(job: Json, warnings: Facts) -> Json:
@@ -46,18 +59,20 @@ def applied(job: Json, warnings: Facts) -> Json:
         "precision_mm": factor**2 * sampling.precision_mm,  # chords bulge by the square of it
     }
     tolerance = max(machine.contact_tolerance, TOLERANCE)
+    longer = longer_steps(job)
     warnings.append(
         core.Fact(
             "job.coarse_resolution",
-            "coarse resolution, for searching: samples {spacing:.3g} mm apart, contacts to {tolerance:.2g}; the figures "
-            "are no verdict. For one set {key} to full",
+            "coarse resolution, for searching: samples {spacing:.3g} mm apart, steps of {travel:.3g} mm, contacts to "
+            "{tolerance:.2g}; the figures are no verdict. For one set {key} to full",
             spacing=spacing,
+            travel=longer["simulation"]["max_travel_mm"],
             tolerance=tolerance,
             key="resolution.mode",
         )
     )
     return {
-        **job,
+        **longer,
         "sampling": {**job["sampling"], **finer},
         "belt_machine": {**job["belt_machine"], "contact_tolerance": tolerance},
     }

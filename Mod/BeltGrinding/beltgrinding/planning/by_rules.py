@@ -16,7 +16,7 @@ from ..base.kinds import Floats, Json, known
 from ..base.records import made
 from ..engine import InputError, core
 from ..inspection import verdict as verdicts
-from ..job import poses
+from ..job import poses, resolution
 from ..job.settings import BeltMachine
 from ..job.typed import typed
 from ..job.workpiece import read_design
@@ -235,7 +235,7 @@ def evenly(job: Json) -> Json:
 
 
 def _coarser(job: Json, area: float) -> Json:
-    job = evenly(job)
+    job = resolution.longer_steps(evenly(job))
     sampling = typed(job).sampling
     spacing = sampling.spacing_mm
     if area <= SAMPLES * spacing**2:

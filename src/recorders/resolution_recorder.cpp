@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kOpen = 0.01;  // of a cell and those round it, that may be open without an edge
 // 1 / (2^p - 1) of what cells of twice the length differ by.
-constexpr double kSmooth = 1.0;          // p = 1
-constexpr double kSingular = 2.4142136;  // p = 1/2
+constexpr double kSmooth = 0.5469182;  // p = 3/2: pressure falls as the root at a contact's rim
+constexpr double kAtEdges = 1.0;       // p = 1: what their own loads leave of the singularity
 
 /// Of a row of cells and its neighbours, of `count`: 2, and 1 each.
 double weight(Eigen::Index k, Eigen::Index count) {
@@ -59,7 +59,7 @@ void ResolutionRecorder::coarsen(const ContactGrid& grid, const Eigen::ArrayXd& 
             if (!(coverage[cell] > 0.0) || !(volume[i] > 0.0)) continue;
             // The wheel's own side is no edge of the surface.
             const double whole = weight(i, nx) * weight(j, ny);
-            const double share = area[i] < whole * (1.0 - kOpen) ? kSingular : kSmooth;
+            const double share = area[i] < whole * (1.0 - kOpen) ? kAtEdges : kSmooth;
             const double open = share * (rate[cell] - volume[i] / area[i]);
             coarse_.pressure[cell] = std::max(rate[cell] - open, 0.0);
         }

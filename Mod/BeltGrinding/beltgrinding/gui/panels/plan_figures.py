@@ -180,7 +180,7 @@ def _round(number: int, one: Json) -> tuple[str, str, str, str]:
 
 def _tried(one: Json) -> str:
     """What passes that were tried are called."""
-    name = f"{figure(one['step_over_mm'], '.3g')} mm"
+    name = f"{figure(one['step_over_mm'], '.2g')} mm"
     if one["repeats"] > 1:
         name += f" × {one['repeats']}"
     return name

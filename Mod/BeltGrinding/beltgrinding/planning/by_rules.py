@@ -231,7 +231,11 @@ def evenly(job: Json) -> Json:
     sampling = typed(job).sampling
     if sampling.edge_spacing_mm or sampling.precision_mm:
         return job
-    return {**job, "sampling": {**job["sampling"], "edge_spacing_mm": sampling.spacing_mm}}
+    return _sampled(job, edge_spacing_mm=sampling.spacing_mm)
+
+
+def _sampled(job: Json, **values: float) -> Json:
+    return {**job, "sampling": {**job["sampling"], **values}}
 
 
 def _coarser(job: Json, area: float) -> Json:
@@ -241,12 +245,12 @@ def _coarser(job: Json, area: float) -> Json:
     if area <= SAMPLES * spacing**2:
         return job
     factor = math.sqrt(area / SAMPLES) / spacing
-    wider = {
-        "spacing_mm": factor * spacing,
-        "edge_spacing_mm": factor * sampling.edge_spacing_mm,
-        "precision_mm": factor**2 * sampling.precision_mm,
-    }
-    return {**job, "sampling": {**job["sampling"], **wider}}
+    return _sampled(
+        job,
+        spacing_mm=factor * spacing,
+        edge_spacing_mm=factor * sampling.edge_spacing_mm,
+        precision_mm=factor**2 * sampling.precision_mm,
+    )
 
 
 def _seen(

@@ -178,7 +178,6 @@ double Grinding::remove(const PathStep& step, double part) {
     const ContactSolution& contact = pressing_.solution();
     Eigen::ArrayXd most, most_beside(beside_.size());
     Sweep sweep;
-    if (!pressing_.flat()) sweep = {step.moved, step.turned};
     double removed = 0.0, scale = 1.0;
     {
         const Stopwatch watch(times_.removal);
@@ -190,10 +189,13 @@ double Grinding::remove(const PathStep& step, double part) {
             most_beside << most.head(columns), most.tail(columns);
             beside_ = beside_.min(most_beside);
         }
-        const double within = map.volume_rate(rate_, {});
-        rate_ = map.mean_over(sweep, rate_);
-        if (const double mean = map.volume_rate(rate_, {}); mean > 0.0) scale = within / mean;
-        rate_ *= scale;
+        if (!pressing_.flat()) {
+            sweep = {step.moved, step.turned};
+            const double within = map.volume_rate(rate_, {});
+            rate_ = map.mean_over(sweep, rate_);
+            if (const double mean = map.volume_rate(rate_, {}); mean > 0.0) scale = within / mean;
+            rate_ *= scale;
+        }
         removed = map.remove(blocks_, rate_, beside_, part, contact.approach);
     }
     recorders_.tell(&Recorder::removed, Removal{pressing_, state_, rate_, beside_, most,

@@ -29,9 +29,8 @@ void Noses::look(const SampleBlocks& blocks) {
     if (field_ == &field && size_ == field.size()) return;
     field_ = &field;
     size_ = field.size();
-    bends_.assign(field.size(), {});
+    bends_ = {};
     const double widest = kBends * cell_;
-    bool any = false;
     for (const Triangle& triangle : field.triangles) {
         for (std::size_t corner = 0; corner < 3; ++corner) {
             const std::uint32_t a = triangle[corner], b = triangle[(corner + 1) % 3];
@@ -39,20 +38,17 @@ void Noses::look(const SampleBlocks& blocks) {
             const Vec3 turn = (field.normal[b] - field.normal[a]).cast<double>();
             const double apart = along.norm(), bend = turn.norm();
             if (!(along.dot(turn) > 0.0) || bend < kNoise || apart > widest * bend) continue;
+            if (bends_.empty()) bends_.resize(field.size());  // few parts have any
             for (const std::uint32_t k : {a, b}) {
                 Bend& known = bends_[k];
                 const auto radius = static_cast<float>(apart / bend);
                 if (known.radius > 0.0F && known.radius <= radius) continue;
                 known = {radius, static_cast<float>(apart), (along / apart).cast<float>()};
-                any = true;
             }
         }
     }
     bent_.clear();
-    if (!any) {
-        bends_.clear();
-        return;
-    }
+    if (bends_.empty()) return;
     bent_.assign(blocks.count(), 0);
     position_.resize(field.size());
     for (std::size_t k = 0; k < blocks.samples().size(); ++k) {

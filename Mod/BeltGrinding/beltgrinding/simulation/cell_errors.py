@@ -42,6 +42,7 @@ def figures(job: Job, field: core.HeightField) -> dict[str, Json]:
     """What summary.json says of the errors; nothing where there are none."""
     if not len(field.height_error):
         return {}
+    most = p95(field)  # before what else is large
     ground = _ground(field)
     error, areas = np.asarray(field.height_error)[ground], np.asarray(field.areas, float)[ground]
     if not areas.sum() > 0.0:
@@ -51,7 +52,7 @@ def figures(job: Job, field: core.HeightField) -> dict[str, Json]:
     height = np.asarray(field.height)[ground]
     nearest = np.minimum(abs(height - lower), abs(height - upper))
     told = {
-        "p95": p95(field),
+        "p95": most,
         "max": float(error.max()),
         "coarse_area_share": _share(areas, coarse),
         "undecided_area_share": _share(areas, nearest <= error),

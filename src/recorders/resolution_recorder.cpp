@@ -1,23 +1,8 @@
 #include "resolution_recorder.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace beltgrinding {
-namespace {
-
-constexpr double kOpen = 0.01;  // of a cell and those round it, that may be open without an edge
-// 1 / (2^p - 1) of what cells of twice the length differ by.
-constexpr double kSmooth = 0.5469182;  // p = 3/2: pressure falls as the root at a contact's rim
-constexpr double kAtEdges = 1.0;       // p = 1: what their own loads leave of the singularity
-
-/// Of a row of cells and its neighbours, of `count`: 2, and 1 each.
-double weight(Eigen::Index k, Eigen::Index count) {
-    return 2.0 + (k > 0 ? 1.0 : 0.0) + (k + 1 < count ? 1.0 : 0.0);
-}
-
-}  // namespace
-
 ResolutionRecorder::ResolutionRecorder(const SampleBlocks& blocks)
     : Keeps(&PhaseTimes::trace), blocks_(blocks), sums_(blocks.count(), Lanes{}) {}
 
@@ -57,11 +42,7 @@ void ResolutionRecorder::coarsen(const ContactGrid& grid, const Eigen::ArrayXd& 
         for (Eigen::Index i = 0; i < nx; ++i) {
             const Eigen::Index cell = j * nx + i;
             if (!(coverage[cell] > 0.0) || !(volume[i] > 0.0)) continue;
-            // The wheel's own side is no edge of the surface.
-            const double whole = weight(i, nx) * weight(j, ny);
-            const double share = area[i] < whole * (1.0 - kOpen) ? kAtEdges : kSmooth;
-            const double open = share * (rate[cell] - volume[i] / area[i]);
-            coarse_.pressure[cell] = std::max(rate[cell] - open, 0.0);
+            coarse_.pressure[cell] = volume[i] / area[i];
         }
     }
 }

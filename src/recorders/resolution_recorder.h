@@ -12,8 +12,9 @@
 namespace beltgrinding {
 
 /// What the contact's cells leave open, for `SimulationResult::unresolved`: Richardson's
-/// extrapolation of the rate from cells of twice the length, the mean of all ways to join them. A
-/// smooth rate goes with the cells' length at least, that beside an edge, singular, with its root.
+/// extrapolation of the rate from cells of twice the length, the mean of all ways to join them. The
+/// rate goes with the cells' length: what cells of twice the length take less, its limit takes
+/// more.
 class ResolutionRecorder final
     : public Keeps<ByBlock<std::array<float, SampleBlocks::kLanes>>, Recorder> {
   public:
@@ -29,7 +30,7 @@ class ResolutionRecorder final
     ByBlock<Lanes> take(std::span<const std::uint32_t> blocks) override;
     void put(std::span<const ByBlock<Lanes>* const> parts) override;
 
-    /// `coarse_`: mm/s per cell, what is as far below the rate as its limit is above.
+    /// `coarse_`: mm/s per cell, on cells of twice the length.
     void coarsen(const ContactGrid& grid, const Eigen::ArrayXd& rate,
                  const Eigen::ArrayXd& coverage);
 

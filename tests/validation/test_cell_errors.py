@@ -74,7 +74,7 @@ def test_what_is_not_fine_is_told(name):
     print(name, {key: round(value, 3) for key, value in found.items()})
     assert found["fine or told"] >= 0.95
     assert found["within its bar"] >= 0.75
-    assert found["coarse"] * (1.0 - found["coarse and told"]) < 0.015
+    assert found["coarse"] * (1.0 - found["coarse and told"]) < 0.0125
 
 
 def test_where_all_is_even_the_bar_is_small():
@@ -105,7 +105,7 @@ def test_a_run_warns_of_what_its_cells_leave_open(monkeypatch):
     limit = max(np.linspace(0.0, 0.199, 50), key=within)
     job = copy.deepcopy(JOBS["stops 8 mm before the end"])
     job["inspection"]["tolerance_mm"] = [-1.0, float(limit)]
-    monkeypatch.setattr(cell_errors, "UNDECIDED", 0.04)
+    monkeypatch.setattr(cell_errors, "UNDECIDED", 0.1)
     result = runs.run(load.validate(job), resume=False)
     assert result.summary["cell_error_mm"]["undecided_area_share"] > cell_errors.UNDECIDED
     assert "contact's cells may leave open" in " ".join(result.summary["warnings"])
@@ -145,7 +145,7 @@ def test_examples(name, freecad, tmp_path):
     freecad.call(make, str(tmp_path), name)
     found = judged(load.load(tmp_path / "job.json"), 1)
     print(name, {key: round(value, 3) for key, value in found.items()})
-    assert found["fine or told"] >= 0.95 and found["within its bar"] >= 0.85
+    assert found["fine or told"] >= 0.95 and found["within its bar"] >= 0.9
 
 
 def make(folder, name):

@@ -34,11 +34,13 @@ def settle():
         QtGui.QApplication.processEvents()
 
 
-def wait(condition, seconds=60):
-    """Waits until ``condition()``; on a busy machine ``BUSY`` times the seconds that it takes on a quiet one."""
+def wait(condition, seconds=60, why=lambda: ""):
+    """Waits until ``condition()``; on a busy machine ``BUSY`` times the seconds that it takes on a quiet one.
+    ``why()``: what the window says where it never is.
+    """
     end = time.monotonic() + BUSY * seconds
     while not condition():
-        assert time.monotonic() < end, "waited in vain"
+        assert time.monotonic() < end, f"waited in vain; {why()}"
         QtGui.QApplication.processEvents()
         time.sleep(0.01)
     settle()
@@ -69,7 +71,7 @@ def menu(text):
         QtCore.QMetaObject.invokeMethod(window, "_updateActions")
         return action.isEnabled()
 
-    wait(enabled, 20)
+    wait(enabled, 20, action.toolTip)
     assert not action.icon().isNull() and action.toolTip()
     action.trigger()
     settle()

@@ -283,6 +283,8 @@ def test_turns_are_about_the_mean_normal():
 
 
 def test_ctrl_c_takes_the_best_so_far_once_it_is_there(capsys):
+    # Of Python again: OpenTURNS, which another test may have called here, has Ctrl-C end the process.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
     watched = searching.Watched(None)
     assert not watched.interrupted()  # nothing is there yet
 
@@ -295,7 +297,10 @@ def test_ctrl_c_takes_the_best_so_far_once_it_is_there(capsys):
         context.throw_if_cancelled()
         return "the best"
 
-    assert background.run(work, True, watched.interrupted) == "the best"
+    try:
+        assert background.run(work, True, watched.interrupted) == "the best"
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert "Ctrl-C once more" in capsys.readouterr().out
     assert not watched.interrupted()  # the second one ends it
 

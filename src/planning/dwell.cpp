@@ -156,7 +156,7 @@ class Interior {
             for (const double reach : kReach) {
                 if (reach == kReach[0]) continue;
                 if (!settle(kFurther, reach)) break;
-                if (cost_.inside(e_) <= most + kGain) continue;
+                if (cost_.inside(e_) <= most + kGain) break;
                 most = cost_.inside(e_);
                 best = found();
             }

@@ -60,7 +60,7 @@ def job_of(shape, radius=20.0, width=5.0, spacing=1.2, allowance=0.15, tolerance
 @pytest.fixture
 def small(monkeypatch):
     """Few candidates."""
-    for name, count in {"FIRST": 3, "LEADERS": 1, "FINALS": 2, "FURTHER": 1}.items():
+    for name, count in {"LEADERS": 2, "FINALS": 2, "FURTHER": 1}.items():
         monkeypatch.setattr(search, name, count)
     monkeypatch.setattr(by_rules, "TRIES", 1)
 

@@ -33,16 +33,19 @@ def with_mode(job: Json, mode: str) -> dict[str, Any]:
     return {**job, "resolution": {**job.get("resolution", {}), "mode": mode}}
 
 
-def longer_steps(job: Json) -> dict[str, Any]:
-    """A validated job with the steps of the coarse mode; longer ones stay, as do those of a job with temperatures."""
-    if typed(job).heat is not None:
-        return dict(job)
-    steps = typed(job).simulation
+def sooner(job: Json) -> dict[str, Any]:
+    """A validated job with the contacts and steps of the coarse mode; what is looser or longer stays, as do the steps of a job with
+    temperatures."""
+    read = typed(job)
+    tolerance = max(read.belt_machine.contact_tolerance, TOLERANCE)
+    looser = {**job, "belt_machine": {**job["belt_machine"], "contact_tolerance": tolerance}}
+    if read.heat is not None:
+        return looser
     longer = {
-        "max_travel_mm": max(steps.max_travel_mm, TRAVEL),
-        "max_angle_deg": max(steps.max_angle_deg, ANGLE),
+        "max_travel_mm": max(read.simulation.max_travel_mm, TRAVEL),
+        "max_angle_deg": max(read.simulation.max_angle_deg, ANGLE),
     }
-    return {**job, "simulation": {**job["simulation"], **longer}}
+    return {**looser, "simulation": {**job["simulation"], **longer}}
 
 
 def applied(job: Json, warnings: Facts) -> Json:
@@ -58,21 +61,16 @@ def applied(job: Json, warnings: Facts) -> Json:
         "edge_spacing_mm": factor * sampling.edge_spacing_mm,
         "precision_mm": factor**2 * sampling.precision_mm,  # chords bulge by the square of it
     }
-    tolerance = max(machine.contact_tolerance, TOLERANCE)
-    longer = longer_steps(job)
+    found = sooner(job)
     warnings.append(
         core.Fact(
             "job.coarse_resolution",
             "coarse resolution, for searching: samples {spacing:.3g} mm apart, steps of {travel:.3g} mm, contacts to "
             "{tolerance:.2g}; the figures are no verdict. For one set {key} to full",
             spacing=spacing,
-            travel=longer["simulation"]["max_travel_mm"],
-            tolerance=tolerance,
+            travel=found["simulation"]["max_travel_mm"],
+            tolerance=found["belt_machine"]["contact_tolerance"],
             key="resolution.mode",
         )
     )
-    return {
-        **longer,
-        "sampling": {**job["sampling"], **finer},
-        "belt_machine": {**job["belt_machine"], "contact_tolerance": tolerance},
-    }
+    return {**found, "sampling": {**job["sampling"], **finer}}

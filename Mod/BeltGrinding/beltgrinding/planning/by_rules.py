@@ -28,8 +28,6 @@ from . import reasons, rounds
 from .step import force_exponent
 
 TRIES = 7  # passes, at most
-ROUNDS = 3  # of a rough plan: one says too little where the force is far off
-SAMPLES = 16_000  # of a rough plan, at most, about
 GAIN = 0.003  # of the area, for other passes to be better
 MATTERS = 0.01  # of the area: a reason for less is let be
 CLOSER = 0.7  # step-over against the one before
@@ -55,6 +53,18 @@ MOST_OF = 0.9  # of the area that is not done at the least feed: the repeats are
 
 # mm (poses,) of the zones of a program as its file will have them; -1: the job's default.
 Zones: TypeAlias = Callable[[Program], Floats]
+
+
+class Roughly(NamedTuple):
+    """How passes that are tried are planned."""
+
+    samples: int  # at most, about
+    rounds: int
+
+
+ROUGHLY = Roughly(16_000, 3)  # one round says too little where the force is far off
+FEWEST_SAMPLES = 3_000
+GLANCE = Roughly(FEWEST_SAMPLES, 1)  # tells which of many are worth a rough plan
 
 
 class Tried(NamedTuple):
@@ -173,9 +183,10 @@ def attempt(
     settings: Json,
     zones: Zones | None = None,
     context: core.RunContext | None = None,
+    how: Roughly = ROUGHLY,
 ) -> Tried:
     """Lays passes on a job (validated, in its time) and plans them roughly. Raises InputError, Cancelled."""
-    return attempted(data, move, settings, zones, context)[0]
+    return attempted(data, move, settings, zones, context, how)[0]
 
 
 def attempted(
@@ -184,6 +195,7 @@ def attempted(
     settings: Json,
     zones: Zones | None = None,
     context: core.RunContext | None = None,
+    how: Roughly = ROUGHLY,
 ) -> tuple[Tried, rounds.Plan]:
     """As ``attempt``, with the rough plan itself."""
     context = context or core.RunContext()
@@ -192,21 +204,31 @@ def attempted(
     laid = lay(data, wanted, settings, context.part(0.0, 0.2), zones)
     # The way is found once: other passes go the same.
     wanted = {**wanted, "along": laid["along"], "direction": list(laid["direction"])}
-    job = _coarser(rounds.settled(with_path(data, laid), context), laid["area_mm2"])
-    rough = {"rounds": ROUNDS, "check": False, "levels": 0}
+    job = rounds.settled(with_path(data, laid), context)
+    job = _coarser(job, laid["area_mm2"], how.samples)
+    rough = {"rounds": how.rounds, "check": False, "levels": 0}
     plan = rounds.plan(job, {**settings, **rough}, context.part(0.2, 1.0))
     return _seen(move[0], machine, wanted, laid, plan, settings), plan
 
 
-def gentled(data: Json, move: Move, settings: Json, zones: Zones | None = None) -> Tried:
+def gentled(
+    data: Json,
+    move: Move,
+    settings: Json,
+    zones: Zones | None = None,
+    over: Callable[[], bool] | None = None,
+    how: Roughly = ROUGHLY,
+) -> Tried:
     """As ``attempt``; where a force that is set by hand is far too great, with less of it: else ways that remove more would all
-    seem worse. Raises InputError."""
-    best = attempt(data, move, settings, zones)
+    seem worse. ``over()``: whether the best so far is enough. Raises InputError."""
+    best = attempt(data, move, settings, zones, how=how)
     for _ in range(GENTLED):
+        if over is not None and over():
+            break
         less = [(gain, one) for gain, one in others(best) if one[0] == FORCE and gain > FAR_OFF]
         if not less:
             break
-        one = attempt(data, less[0][1], settings, zones)
+        one = attempt(data, less[0][1], settings, zones, how=how)
         if one.in_tolerance <= best.in_tolerance:
             break
         best = one
@@ -221,7 +243,7 @@ def expected(job: Json, context: core.RunContext | None = None) -> float:
     shape = read_design(design, context.part(0.0, 0.0))
     faces = design.faces or range(1, shape.face_count + 1)
     area = sum(shape.face_area(face - 1) for face in faces)
-    result = runs.run(_coarser(job, area), context, resume=False)
+    result = runs.run(_coarser(job, area, ROUGHLY.samples), context, resume=False)
     return float(result.summary["in_tolerance_area_share"])
 
 
@@ -238,19 +260,20 @@ def _sampled(job: Json, **values: float) -> Json:
     return {**job, "sampling": {**job["sampling"], **values}}
 
 
-def _coarser(job: Json, area: float) -> Json:
-    job = resolution.longer_steps(evenly(job))
-    sampling = typed(job).sampling
-    spacing = sampling.spacing_mm
-    if area <= SAMPLES * spacing**2:
-        return job
-    factor = math.sqrt(area / SAMPLES) / spacing
-    return _sampled(
-        job,
-        spacing_mm=factor * spacing,
+def _coarser(job: Json, area: float, samples: int) -> Json:
+    """The job in the coarse mode, with at most ``samples``, about; small faces keep enough of them."""
+    read = typed(evenly(job))
+    own, contact = read.sampling.spacing_mm, read.belt_machine.contact_spacing_mm
+    least, most = math.sqrt(area / samples), math.sqrt(area / FEWEST_SAMPLES)
+    factor = max(min(resolution.SAMPLES * contact, most), least, own) / own
+    sampling = read.sampling
+    even = _sampled(
+        evenly(job),
+        spacing_mm=factor * own,
         edge_spacing_mm=factor * sampling.edge_spacing_mm,
         precision_mm=factor**2 * sampling.precision_mm,
     )
+    return resolution.sooner(even)
 
 
 def _seen(

@@ -1,6 +1,6 @@
-"""The search for wheel, direction of the passes and belt angle: first by what the geometry says, then by rough plans of the
-most promising, then by rules from the best of those, then with further groups of passes where the best leave too much, then by
-full plans of the best three.
+"""The search for wheel, direction of the passes and belt angle: first by what the geometry says, then by a glance at what seems to
+reach enough, then by rough plans of the best, then by rules from the best of those, then with further groups of passes where the
+best leave too much, then by full plans of the best three.
 
 Candidates run side by side, on processes of one thread each. What is found depends on how many were tried, never on how many
 processes did it, nor on which was ready first.
@@ -31,13 +31,13 @@ from .moves import Moves
 BUDGET_S = 120.0
 UNTIL_IT_PAYS = float("inf")  # s: as long as a generation of rough plans brings GAIN
 OWN_ANGLES, OTHER_ANGLES = (0.0, 90.0, 45.0, 135.0), (0.0, 90.0)  # degrees, of the belt
-FIRST = 16  # rough plans of a generation
-LEADERS = 4  # that rules go on from
+LEADERS = 4  # of a glance, that are planned in a generation; of rough plans, that rules go on from
 FINALS = 3  # full plans
 FAR_BEHIND = 0.1  # of the area: passes so far behind get no full plan
 GAIN = 0.005  # of the area
 ENOUGH = 0.995  # of the area: nothing else is tried
-COARSE_UNTIL, RULES_UNTIL, GROUPS_UNTIL, FULL_UNTIL = 0.35, 0.55, 0.7, 0.9  # of the budget
+# Of the budget.
+GLANCES_UNTIL, COARSE_UNTIL, RULES_UNTIL, GROUPS_UNTIL, FULL_UNTIL = 0.2, 0.35, 0.55, 0.7, 0.9
 TO_END = 0.1  # of the budget, in which what is being tried then may end
 GROUPS, OF_A_GROUP = 3, 4  # further groups of passes; ways and belt angles that are tried for each
 FURTHER = 4  # wheels of which is planned what they would bring
@@ -95,6 +95,23 @@ def ruled(
 ) -> tuple[Tried, list[dict[str, Any]]]:
     """As ``by_rules.climb``; nothing new is tried after ``until``."""
     return by_rules.climb(data, first, settings, zones, moves, before=before, over=until.passed)
+
+
+def begun(
+    data: Json,
+    until: End,
+    move: Move,
+    settings: Json,
+    zones: Zones | None = None,
+    how: by_rules.Roughly = by_rules.ROUGHLY,
+) -> Tried:
+    """As ``by_rules.gentled``; nothing further is tried after ``until``."""
+    return by_rules.gentled(data, move, settings, zones, until.passed, how)
+
+
+def rough(data: Json, until: End, *arguments: Any) -> Tried | None:
+    """As ``begun``; None where ``until`` has passed before it begins."""
+    return None if until.passed() else begun(data, until, *arguments)
 
 
 def full(data: Json, until: End, tried: Tried, settings: Json, zones: Zones | None) -> Tried:
@@ -172,7 +189,8 @@ class _Run:
         default, coarse = self._coarse(start, candidates(own, others, start, self.search.fixed))
         mine = [one for one in coarse if one.machine["wheel"] == own.machine["wheel"]]
         wheels = self._brought(further, own, mine)
-        best = self._finals(default, self._grouped(self._ruled(default, coarse)))
+        default, tried = self._ruled(default, coarse)
+        best = self._finals(default, self._grouped(tried))
         fits = [one.map.fits for one in (own, *others, *further)]
         return Found(
             best=best,
@@ -202,10 +220,15 @@ class _Run:
         return self._until(share).passed()
 
     def _run(
-        self, calls: Sequence[Call], until: float, part: tuple[float, float], needed: int = 0
+        self,
+        calls: Sequence[Call],
+        until: float,
+        part: tuple[float, float],
+        needed: int = 0,
+        told: bool = True,
     ) -> list[Any]:
         """Values of the calls, None of those that failed or were not done until that share of the budget; the first ``needed`` are done in
-        any case."""
+        any case, and of these only is told if not ``told``."""
         left, enough = set(range(needed)), False
 
         def taken(number: int, answer: Answer) -> None:
@@ -213,7 +236,7 @@ class _Run:
             left.discard(number)
             rows = _rows(answer.value)
             enough |= number < needed and any(row["in_tolerance"] >= ENOUGH for row in rows)
-            for row in rows:
+            for row in rows if told or number < needed else ():
                 self._show(row)
 
         answers = self.crew.run(
@@ -224,8 +247,8 @@ class _Run:
         )
         if enough:  # what else was done until then is chance
             answers = [*answers[:needed], *([None] * (len(calls) - needed))]
-        self.through &= enough or all(answer is not None for answer in answers)
-        for answer in answers:
+        self.through &= enough or all(_done(answer) for answer in answers)
+        for answer in answers if told else answers[:needed]:
             for row in [] if answer is None else _rows(answer.value):
                 self.rows.append(
                     {**row, "better": row["in_tolerance"] > self._best() + by_rules.GAIN}
@@ -234,9 +257,8 @@ class _Run:
         for error in failed:
             if not isinstance(error, InputError):
                 raise error
-        if failed and all(answer is None or answer.error is not None for answer in answers):
-            if needed:
-                raise failed[0]
+        if failed and needed and all(one is None or one.value is None for one in answers):
+            raise failed[0]
         return [None if answer is None else answer.value for answer in answers]
 
     def _best(self) -> float:
@@ -274,28 +296,30 @@ class _Run:
         return known(seen[0]), others, further
 
     def _coarse(self, start: Move, queue: Sequence[Move]) -> tuple[Tried | None, list[Tried]]:
-        """(what the rules find from the start, rough plans of candidates, the best first)."""
-        until = self._until(COARSE_UNTIL)
-        calls = [self._call(ruled, until, start, self.settings, self.zones)]
-        default: Tried | None = None
+        """(a rough plan of the start, if it can be laid; of candidates, the best first)."""
+        few = len(queue) <= LEADERS
+        how = by_rules.ROUGHLY if few else by_rules.GLANCE
+        until = self._until(COARSE_UNTIL if few else GLANCES_UNTIL)
+        calls = [self._call(begun, until, start, self.settings, self.zones)]
+        for move in queue:
+            calls.append(self._call(rough, until, move, self.settings, self.zones, how))
+        default, *values = self._run(calls, COARSE_UNTIL + TO_END, (0.1, 0.3), 1, few)
+        seen = glanced = _best_first(values)
+        if few or (default is not None and default.in_tolerance >= ENOUGH):
+            return default, seen
         found: list[Tried] = []
-        needed = 1
-        while True:
-            some, queue = queue[:FIRST], queue[FIRST:]
-            for move in some:
-                calls.append(self._call(by_rules.gentled, move, self.settings, self.zones))
-            best = self._best()
-            values = self._run(calls, COARSE_UNTIL, (0.1, 0.4), needed)
-            if needed:
-                default = values[0] and values[0][0]
-                values = values[1:]
-                if default is not None and default.in_tolerance >= ENOUGH:
-                    return default, []
-            found += [value for value in values if value is not None]
-            pays = bool(needed) or self._best() > best + GAIN
-            if not queue or not pays or self._over(COARSE_UNTIL):
-                return default, sorted(found, key=lambda one: -one.in_tolerance)
-            needed, calls = 0, []
+        until, best = self._until(COARSE_UNTIL), 0.0
+        while seen and (not found or found[0].in_tolerance > best + GAIN):
+            best = found[0].in_tolerance if found else 0.0
+            some, seen = seen[:LEADERS], seen[LEADERS:]
+            calls = []
+            for one in some:
+                move = (one.change, one.machine, one.wanted)
+                calls.append(self._call(rough, until, move, self.settings, self.zones))
+            values = self._run(calls, COARSE_UNTIL + TO_END, (0.3, 0.5))
+            found = _best_first([*found, *values])
+        self.rows += [one.row(False) for one in seen]
+        return default, found or glanced
 
     def _brought(self, further: list[Seen], own: Seen, mine: list[Tried]) -> list[dict[str, Any]]:
         """What further wheels would bring: those that get to more are planned coarsely, as the own one was."""
@@ -304,12 +328,13 @@ class _Run:
         start: Move = ("first", own.machine, self.first)
         ahead = [one for one in further if one.most > own.most + GAIN] if mine else []
         ahead = sorted(ahead, key=lambda one: -one.most)[:FURTHER]
+        until = self._until(RULES_UNTIL)
         calls, owner = [], []
         for number, one in enumerate(ahead):
             for move in of_further(one, start, self.search.fixed, mine[0]):
-                calls.append(self._call(by_rules.gentled, move, self.settings, self.zones))
+                calls.append(self._call(rough, until, move, self.settings, self.zones))
                 owner.append(number)
-        values = self._run(calls, RULES_UNTIL, (0.4, 0.5))
+        values = self._run(calls, RULES_UNTIL + TO_END, (0.4, 0.5))
         shares: dict[int, float] = {}
         for number, value in zip(owner, values):
             if value is not None:
@@ -317,10 +342,12 @@ class _Run:
                 shares[key] = max(shares.get(key, 0.0), value.in_tolerance)
         return [_brings(one, shares.get(id(one)), mine) for one in further]
 
-    def _ruled(self, default: Tried | None, coarse: list[Tried]) -> list[Tried]:
-        """What the rules find from the best, best first, and what they began with."""
-        leaders = [*([default] if default else []), *coarse]
-        leaders = sorted(leaders, key=lambda one: -one.in_tolerance)[:LEADERS]
+    def _ruled(
+        self, default: Tried | None, coarse: list[Tried]
+    ) -> tuple[Tried | None, list[Tried]]:
+        """What the rules find from the start, and from it and the best with what they began with, the best first."""
+        first = [] if default is None else [default]
+        leaders = [*first, *coarse[: LEADERS - len(first)]]
         moves = (Moves(self.search.fixed),)
         calls = []
         for one in leaders:
@@ -328,8 +355,10 @@ class _Run:
             options = (begun, self.settings, self.zones, moves, one)
             calls.append(self._call(ruled, self._until(RULES_UNTIL), *options))
         values = self._run(calls, RULES_UNTIL + TO_END, (0.5, 0.7))
-        climbed = [value[0] for value in values if value is not None]
-        return sorted([*climbed, *coarse], key=lambda one: -one.in_tolerance)
+        climbed = [one if value is None else value[0] for one, value in zip(leaders, values)]
+        return climbed[0] if first else None, _best_first(
+            [*climbed, *coarse[len(leaders) - len(first) :]]
+        )
 
     def _grouped(self, tried: list[Tried]) -> list[Tried]:
         """Those that were tried, and before them the best with further groups of passes, their ways and belt angles by what the wheel
@@ -349,9 +378,8 @@ class _Run:
             if seen is None:
                 break
             moves = further_groups(best, seen, fixed)[:OF_A_GROUP]
-            calls = [
-                self._call(by_rules.gentled, move, self.settings, self.zones) for move in moves
-            ]
+            until = self._until(GROUPS_UNTIL)
+            calls = [self._call(rough, until, move, self.settings, self.zones) for move in moves]
             values = self._run(calls, GROUPS_UNTIL + TO_END, (0.7, 0.75))
             found = [one for one in values if one is not None]
             found = [one for one in found if one.in_tolerance > best.in_tolerance + GAIN]
@@ -377,11 +405,21 @@ class _Run:
         return max(values, key=lambda one: one.in_tolerance)
 
 
+def _best_first(values: Sequence[Tried | None]) -> list[Tried]:
+    found = [one for one in values if one is not None]
+    return sorted(found, key=lambda one: -one.in_tolerance)
+
+
 def _rows(value: Any) -> list[dict[str, Any]]:
     """What is told of a call's value."""
     if isinstance(value, Tried):
         return [value.row(False)]
     return list(value[1]) if isinstance(value, tuple) and isinstance(value[0], Tried) else []
+
+
+def _done(answer: Answer | None) -> bool:
+    """Whether a call was worked at."""
+    return answer is not None and (answer.value is not None or answer.error is not None)
 
 
 def _same(one: Tried, other: Tried) -> bool:

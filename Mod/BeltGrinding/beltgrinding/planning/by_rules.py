@@ -262,18 +262,19 @@ def _sampled(job: Json, **values: float) -> Json:
 
 def _coarser(job: Json, area: float, samples: int) -> Json:
     """The job in the coarse mode, with at most ``samples``, about; small faces keep enough of them."""
-    read = typed(evenly(job))
-    own, contact = read.sampling.spacing_mm, read.belt_machine.contact_spacing_mm
+    job = evenly(job)
+    read = typed(job)
+    sampling, contact = read.sampling, read.belt_machine.contact_spacing_mm
+    own = sampling.spacing_mm
     least, most = math.sqrt(area / samples), math.sqrt(area / FEWEST_SAMPLES)
     factor = max(min(resolution.SAMPLES * contact, most), least, own) / own
-    sampling = read.sampling
-    even = _sampled(
-        evenly(job),
+    coarse = _sampled(
+        job,
         spacing_mm=factor * own,
         edge_spacing_mm=factor * sampling.edge_spacing_mm,
         precision_mm=factor**2 * sampling.precision_mm,
     )
-    return resolution.sooner(even)
+    return resolution.sooner(coarse)
 
 
 def _seen(

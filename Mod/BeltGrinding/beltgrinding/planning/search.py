@@ -228,7 +228,7 @@ class _Run:
         told: bool = True,
     ) -> list[Any]:
         """Values of the calls, None of those that failed or were not done until that share of the budget; the first ``needed`` are done in
-        any case, and of these only is told if not ``told``."""
+        any case. ``told``: whether the others, too, are shown and kept as rows."""
         left, enough = set(range(needed)), False
 
         def taken(number: int, answer: Answer) -> None:

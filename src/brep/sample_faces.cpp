@@ -196,19 +196,28 @@ double whole_area(const std::vector<Job>& jobs, const Shape::Impl& impl) {
 // A nose that turns by more than this between two neighbours, rad, is not seen well enough; where
 // it is seen already, samples askew to it may turn by more.
 constexpr double kMostTurn = 0.5, kStillHidden = 0.8;
+constexpr double kFewHidden = 1e-3;   // of the samples: corners, for which no face is sampled finer
+constexpr double kFewerHidden = 0.5;  // of the edges: else they are a crease, which stays one
 
 /// Samples a face again until noses and edge rounds finer than the spacing have a row on each
-/// crown.
+/// crown: first finer where it bends, then all of it, as long as that shows more of them.
 void resolve_crowns(FaceSamples& samples, FaceRequest request, const RunContext& context) {
     const double spacing = request.spacing;
-    for (int k = 0; k < kMostRefinements; ++k) {
-        const double wanted = crown_spacing(samples, spacing, k == 0 ? kMostTurn : kStillHidden);
-        if (!(wanted > 0)) return;
-        // What the first samples saw of a nose is wider than it is.
-        if (k > 0) request.spacing *= 0.5;
-        request.edge_spacing = k > 0 ? std::min(wanted, 0.5 * request.edge_spacing) : wanted;
+    Crowns crowns = hidden_crowns(samples, spacing, kMostTurn);
+    for (int k = 0; k < kMostRefinements && crowns.edges > 0; ++k) {
+        const double enough = k > 0 ? kFewHidden * double(samples.point.size()) : 0.0;
+        if (double(crowns.edges) <= enough) return;
+        const bool all_finer = k > 1;
+        // What the first samples saw of a nose is wider than it is; rows may miss it, too.
+        request.edge_spacing =
+            k > 0 ? std::min(crowns.spacing, 0.5 * request.edge_spacing) : crowns.spacing;
+        if (all_finer) request.spacing *= 0.5;
         request.edge_spacing = std::min(request.edge_spacing, request.spacing);
-        samples = sample_face(request, context);
+        FaceSamples finer = sample_face(request, context);
+        const Crowns still = hidden_crowns(finer, spacing, kStillHidden);
+        if (all_finer && double(still.edges) > kFewerHidden * double(crowns.edges)) return;
+        samples = std::move(finer);
+        crowns = still;
     }
 }
 

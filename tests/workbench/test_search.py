@@ -14,7 +14,7 @@ from beltgrinding import cli
 from beltgrinding.cli import background, searching
 from beltgrinding.engine import core
 from beltgrinding.job import load as jobs
-from beltgrinding.planning import by_rules, candidates, grinding, moves, search, wheels
+from beltgrinding.planning import by_rules, candidates, grinding, moves, rough, search, wheels
 from beltgrinding.planning.candidates import Seen
 from beltgrinding.planning.search import Search
 from beltgrinding.raster import raster_path, reach_map
@@ -194,7 +194,7 @@ def tried(machine=None, shares=None, gentler=(0.0, 1.0), levels=9, **wanted):
     machine = machine or job_of(plate())["belt_machine"]
     up = np.array([0.0, 0.0, 1.0])
     feeds = np.ones(3), np.ones(3)
-    return by_rules.Tried(
+    return rough.Tried(
         *("first", machine, settings, 0.5, feeds, {**none, **(shares or {})}, 0.2),
         *(6.0, 8.0, 3.0, levels, 40, 10.0, 0.0, 1, gentler, up),
         *(np.zeros((0, 3)), 0.0, 0.0),
@@ -256,8 +256,8 @@ def test_less_force_is_tried_where_it_is_set_by_hand():
         return [move[1]["force_N"] for _, move in by_rules.others(one) if move[0] == "force"]
 
     assert forces(tried(own, gentler=(0.3, 0.2))) == [pytest.approx(0.2 * own["force_N"])]
-    assert forces(tried(own, gentler=(0.3, 0.001))) == [by_rules.FORCE_LEAST]
-    least = {**own, "force_N": by_rules.FORCE_LEAST}
+    assert forces(tried(own, gentler=(0.3, 0.001))) == [rough.FORCE_LEAST]
+    least = {**own, "force_N": rough.FORCE_LEAST}
     for one in (
         tried(own),
         tried(least, gentler=(0.3, 0.5)),

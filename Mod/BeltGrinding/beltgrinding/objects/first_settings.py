@@ -6,7 +6,7 @@ from typing import Any
 
 from ..base.kinds import Json
 from ..engine import Cancelled, InputError
-from ..planning import by_rules
+from ..planning import rough
 from ..raster import proposal
 from . import job_data, job_inputs, waiting
 from .belt_machine import BeltMachine
@@ -56,7 +56,7 @@ def expected(job: DocumentObject, text: str = "") -> float | None:
     try:
         with job_inputs.scratch_folder() as folder:
             data = job_inputs.to_data(job, folder)
-            return waiting.wait(lambda context: by_rules.expected(data, context), text)
+            return waiting.wait(lambda context: rough.expected(data, context), text)
     except (InputError, Cancelled):
         return None
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from ..base.kinds import Json
 from ..raster import reach_map
-from .by_rules import MATTERS, Move, Tried
+from .rough import MATTERS, Move, Tried
 
 OF_A_WHEEL = 2  # of each wheel besides the job's own
 FAR_BEHIND = 0.1  # of the area: ways on which the wheel gets to so much less are no candidates

@@ -14,9 +14,9 @@ from ..job.settings import BeltMachine, Job
 from ..job.typed import typed
 from ..programs.force_device import of_job
 from ..raster import raster_path
-from . import by_rules, rounds, search as searches
-from .by_rules import Tried, Zones
+from . import by_rules, rough, rounds, search as searches
 from .limits import GENTLER
+from .rough import Tried, Zones
 
 GENTLE = 0.2  # of the force: the least where none is given, so that borders and ends of passes can be spared
 FINAL = 0.5  # of the time: the last plan
@@ -98,9 +98,9 @@ def _planned(
     wanted, force = best.wanted, made(BeltMachine, best.machine).force_N
     if force != typed(data).belt_machine.force_N and not wanted["force_N"]:
         wanted = {**wanted, "force_N": force}  # so that its passes can be laid once more
-    data = by_rules.with_machine(data, best.machine, wanted, settings)
-    laid = by_rules.lay(data, wanted, settings, context.part(0.0, 0.1), zones)
-    path = by_rules.with_path(data, laid)
+    data = rough.with_machine(data, best.machine, wanted, settings)
+    laid = rough.lay(data, wanted, settings, context.part(0.0, 0.1), zones)
+    path = rough.with_path(data, laid)
     plan = rounds.plan(path, settings, context.part(0.1, 1.0), told, start=best.start, over=over)
     return Ground(wanted, laid, plan, tried)
 

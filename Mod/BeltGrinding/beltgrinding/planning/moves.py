@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..base.kinds import Floats, Json
-from .by_rules import MATTERS, Move, Tried
+from .rough import MATTERS, Move, Tried
 
 TURN_DEG = 22.5  # from the best direction, and from the best belt angle
 HALF_TURN = 180.0  # degrees of the belt's angle: the belt's travel the other way round is the same to the part

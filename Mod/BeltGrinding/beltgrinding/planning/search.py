@@ -19,12 +19,11 @@ import numpy as np
 from ..base.crew import Answer, Call, Crew, End
 from ..base.kinds import Context, Json, known
 from ..engine import InputError, core
-from ..job import resolution
 from ..job.typed import typed
 from ..job.workpiece import read_design
 from ..raster import reach_map
-from . import by_rules, rounds
-from .by_rules import Move, Tried, Zones
+from . import rough, tasks
+from .rough import Move, Tried, Zones
 from .candidates import Seen, candidates, further_groups, of_further
 from .moves import Moves
 
@@ -76,56 +75,6 @@ class Found(NamedTuple):
         """As JSON has it."""
         kept = ("geometry", "wheels", "reachable", "reachable_by_any", "seconds", "through")
         return {"tried": self.rows, **{name: getattr(self, name) for name in kept}}
-
-
-def alone(function: Callable[..., Any], *arguments: Any) -> Any:
-    """The function's answer, by one thread; called in a process of its own."""
-    core.set_threads(1)
-    return function(*arguments)
-
-
-def ruled(
-    data: Json,
-    until: End,
-    first: Move,
-    settings: Json,
-    zones: Zones | None,
-    moves: tuple[by_rules.Moves, ...] = (),
-    before: Tried | None = None,
-) -> tuple[Tried, list[dict[str, Any]]]:
-    """As ``by_rules.climb``; nothing new is tried after ``until``."""
-    return by_rules.climb(data, first, settings, zones, moves, before=before, over=until.passed)
-
-
-def begun(
-    data: Json,
-    until: End,
-    move: Move,
-    settings: Json,
-    zones: Zones | None = None,
-    how: by_rules.Roughly = by_rules.ROUGHLY,
-) -> Tried:
-    """As ``by_rules.gentled``; nothing further is tried after ``until``."""
-    return by_rules.gentled(data, move, settings, zones, until.passed, how)
-
-
-def rough(data: Json, until: End, *arguments: Any) -> Tried | None:
-    """As ``begun``; None where ``until`` has passed before it begins."""
-    return None if until.passed() else begun(data, until, *arguments)
-
-
-def full(data: Json, until: End, tried: Tried, settings: Json, zones: Zones | None) -> Tried:
-    """Passes that were tried with the feeds and forces of a full plan in the coarse resolution. No round begins after ``until``."""
-    data = by_rules.with_machine(data, tried.machine, tried.wanted, settings)
-    laid = by_rules.lay(data, tried.wanted, settings, core.RunContext(), zones)
-    settings = {**settings, "goal": "tolerance", "levels": 0, "check": False}
-    job = resolution.applied(
-        resolution.with_mode(by_rules.evenly(by_rules.with_path(data, laid)), resolution.COARSE), []
-    )
-    plan = rounds.plan(job, settings, start=tried.start, over=until.passed)
-    share = max(by_rules.share(one) for one in plan.rounds)
-    planned = tried._replace(change="full", in_tolerance=share, start=(plan.new, plan.factors))
-    return planned._replace(shares=plan.why["shares"])
 
 
 def find(
@@ -207,7 +156,7 @@ class _Run:
         )
 
     def _call(self, function: Callable[..., Any], *arguments: Any) -> Call:
-        return Call(alone, (function, self.data, *arguments))
+        return Call(tasks.alone, (function, self.data, *arguments))
 
     def _until(self, share: float) -> End:
         """When that share of the budget is spent, or who asked wants no more."""
@@ -250,9 +199,7 @@ class _Run:
         self.through &= enough or all(_done(answer) for answer in answers)
         for answer in answers if told else answers[:needed]:
             for row in [] if answer is None else _rows(answer.value):
-                self.rows.append(
-                    {**row, "better": row["in_tolerance"] > self._best() + by_rules.GAIN}
-                )
+                self.rows.append({**row, "better": row["in_tolerance"] > self._best() + rough.GAIN})
         failed = [one.error for one in answers if one is not None and one.error is not None]
         for error in failed:
             if not isinstance(error, InputError):
@@ -265,7 +212,7 @@ class _Run:
         return max((row["in_tolerance"] for row in self.rows), default=0.0)
 
     def _show(self, row: dict[str, Any]) -> None:
-        better = row["in_tolerance"] > self.shown + by_rules.GAIN
+        better = row["in_tolerance"] > self.shown + rough.GAIN
         self.shown = max(self.shown, row["in_tolerance"])
         if self.told is not None:
             self.told({**row, "better": better})
@@ -286,7 +233,7 @@ class _Run:
             if "belt_angle_deg" in fixed:
                 angles = (wanted["belt_angle_deg"],)
             job = {**self.data, "belt_machine": machine}
-            calls.append(Call(alone, (reach_map.look, job, wanted, ways, angles)))
+            calls.append(Call(tasks.alone, (reach_map.look, job, wanted, ways, angles)))
         answers = self._run(calls, 1.0, (0.0, 0.1), needed=len(calls))
         if answers[0] is None:  # which says why
             reach_map.look(self.data, wanted, ways, OWN_ANGLES, self.context.part(0.1, 0.1))
@@ -298,16 +245,17 @@ class _Run:
     def _coarse(self, start: Move, queue: Sequence[Move]) -> tuple[Tried | None, list[Tried]]:
         """(a rough plan of the start, if it can be laid; of candidates, the best first)."""
         few = len(queue) <= LEADERS
-        how = by_rules.ROUGHLY if few else by_rules.GLANCE
+        how = rough.ROUGHLY if few else rough.GLANCE
         until = self._until(COARSE_UNTIL if few else GLANCES_UNTIL)
-        calls = [self._call(begun, until, start, self.settings, self.zones)]
+        calls = [self._call(tasks.begun, until, start, self.settings, self.zones)]
         for move in queue:
-            calls.append(self._call(rough, until, move, self.settings, self.zones, how))
+            calls.append(self._call(tasks.soon, until, move, self.settings, self.zones, how))
         default, *values = self._run(calls, COARSE_UNTIL + TO_END, (0.1, 0.3), 1, few)
         seen = glanced = _best_first(values)
         if few or (default is not None and default.in_tolerance >= ENOUGH):
             return default, seen
         found: list[Tried] = []
+        seen_only: list[Tried] = []
         until, best = self._until(COARSE_UNTIL), 0.0
         while seen and (not found or found[0].in_tolerance > best + GAIN):
             best = found[0].in_tolerance if found else 0.0
@@ -315,10 +263,11 @@ class _Run:
             calls = []
             for one in some:
                 move = (one.change, one.machine, one.wanted)
-                calls.append(self._call(rough, until, move, self.settings, self.zones))
+                calls.append(self._call(tasks.soon, until, move, self.settings, self.zones))
             values = self._run(calls, COARSE_UNTIL + TO_END, (0.3, 0.5))
             found = _best_first([*found, *values])
-        self.rows += [one.row(False) for one in seen]
+            seen_only += [one for one, value in zip(some, values) if value is None]
+        self.rows += [one.row(False) for one in [*seen_only, *seen]]
         return default, found or glanced
 
     def _brought(self, further: list[Seen], own: Seen, mine: list[Tried]) -> list[dict[str, Any]]:
@@ -332,7 +281,7 @@ class _Run:
         calls, owner = [], []
         for number, one in enumerate(ahead):
             for move in of_further(one, start, self.search.fixed, mine[0]):
-                calls.append(self._call(rough, until, move, self.settings, self.zones))
+                calls.append(self._call(tasks.soon, until, move, self.settings, self.zones))
                 owner.append(number)
         values = self._run(calls, RULES_UNTIL + TO_END, (0.4, 0.5))
         shares: dict[int, float] = {}
@@ -353,7 +302,7 @@ class _Run:
         for one in leaders:
             begun: Move = (one.change, one.machine, one.wanted)
             options = (begun, self.settings, self.zones, moves, one)
-            calls.append(self._call(ruled, self._until(RULES_UNTIL), *options))
+            calls.append(self._call(tasks.ruled, self._until(RULES_UNTIL), *options))
         values = self._run(calls, RULES_UNTIL + TO_END, (0.5, 0.7))
         climbed = [one if value is None else value[0] for one, value in zip(leaders, values)]
         return climbed[0] if first else None, _best_first(
@@ -368,18 +317,20 @@ class _Run:
             return tried
         for _ in range(GROUPS):
             best = tried[0]
-            if best.left_share < by_rules.MATTERS or self._over(GROUPS_UNTIL):
+            if best.left_share < rough.MATTERS or self._over(GROUPS_UNTIL):
                 break
             job = {**self.data, "belt_machine": best.machine}
             near = {**best.wanted, **best.region()}
             angles = (best.wanted["belt_angle_deg"],) if "belt_angle_deg" in fixed else OWN_ANGLES
-            call = Call(alone, (reach_map.look, job, near, self.ways, angles))
+            call = Call(tasks.alone, (reach_map.look, job, near, self.ways, angles))
             (seen,) = self._run([call], GROUPS_UNTIL, (0.7, 0.7))
             if seen is None:
                 break
             moves = further_groups(best, seen, fixed)[:OF_A_GROUP]
             until = self._until(GROUPS_UNTIL)
-            calls = [self._call(rough, until, move, self.settings, self.zones) for move in moves]
+            calls = [
+                self._call(tasks.soon, until, move, self.settings, self.zones) for move in moves
+            ]
             values = self._run(calls, GROUPS_UNTIL + TO_END, (0.7, 0.75))
             found = [one for one in values if one is not None]
             found = [one for one in found if one.in_tolerance > best.in_tolerance + GAIN]
@@ -398,7 +349,7 @@ class _Run:
             if not chosen or default.in_tolerance > chosen[0].in_tolerance - FAR_BEHIND:
                 chosen = sorted([*chosen[: FINALS - 1], default], key=lambda one: -one.in_tolerance)
         until = self._until(FULL_UNTIL)
-        calls = [self._call(full, until, one, self.settings, self.zones) for one in chosen]
+        calls = [self._call(tasks.full, until, one, self.settings, self.zones) for one in chosen]
         own = [k for k, one in enumerate(chosen) if default is not None and _same(one, default)]
         needed = 1 + max(own, default=0)
         values = [one for one in self._run(calls, 1.0, (0.7, 1.0), needed) if one is not None]

@@ -24,12 +24,13 @@ from ..job.typed import typed
 from ..job.workpiece import make_stocked_field, read_design
 from ..raster import raster_path, reach_map, region
 from ..simulation.result import Result
-from . import by_rules, rounds, search as searches, wheels
+from . import rough, rounds, search as searches, wheels
 from .belts import Belt, mounted
-from .by_rules import Zones
 from .candidates import Seen, one_a_way, ranked
 from .grinding import Ground, grind as grind_one, with_forces
-from .search import GAIN, alone
+from .rough import Zones
+from .search import GAIN
+from .tasks import alone
 
 WAYS = 2  # of each wheel, on which it gets to most
 ANGLES = (0.0, 90.0)  # degrees, of the belt to its passes
@@ -188,7 +189,7 @@ def planned(
     data, settings = rounds.in_time(job, with_forces(typed(job), settings))
     laid = wanted if step.everywhere or left is None else with_region(job, wanted)
     move = ("stage", records.plain(typed(data).belt_machine), laid)
-    tried, plan = by_rules.attempted(data, move, settings, zones)
+    tried, plan = rough.attempted(data, move, settings, zones)
     plan.after.field.write_hdf5(state)
     share, open_zones = judged(plan.after, tool.job)
     kept = {k: v for k, v in tried.wanted.items() if k not in ("region_points", "region_mm")}

@@ -44,14 +44,17 @@ std::vector<std::optional<PoseContact>> contacts_at(const HeightField& field, co
     }
     const SampleBlocks blocks(field, context);
     std::vector<std::optional<PoseContact>> result;
+    Pressing pressing(process, contact_cell(field, tool_envelope(process).wheel, resolution),
+                      resolution.contact_tolerance, model, context);
+    pressing.map().prepare(blocks);
+    const auto untouched = pressing.snapshot({});
+    const Snapshot* const begins = untouched.get();
     for (const std::size_t pose : poses) {
         context.throw_if_cancelled();
+        pressing.restore({&begins, 1});  // a contact must not depend on the one before
         const PathPose& at = path.poses()[pose];
         PoseContact contact;
         contact.commanded = at.force >= 0.0 ? at.force : process.force;
-        // One of its own each: a contact must not depend on the one before.
-        Pressing pressing(process, contact_cell(field, tool_envelope(process).wheel, resolution),
-                          resolution.contact_tolerance, model, context);
         const auto state = pressing.press(blocks, path.frames().work_from_contact(at.base_from_tcp),
                                           contact.commanded);
         if (state == Pressing::State::kNoContact) {

@@ -1,6 +1,6 @@
 """What `beltgrind grind` makes of faces of the real parts of shared/data/cad: by rules, and by its search, against what is reachable.
 
-tools/bench grind [NAME] [--uneven] [--budget S]; `python grind_bench.py [NAME] [--uneven] [--budget S] [--json FILE]` does the same. The first
+tools/bench grind [NAME] [--uneven] [--budget S] [--random N]; `python grind_bench.py` with the same, and [--json FILE], does it, too. The first
 settings are those of `grind` for a part's file; the stock is 0.3 mm, or with --uneven 0.3 mm +- 0.15 mm in waves of 40 to 90 mm; the tolerance
 +-0.05 mm; the robot's time. Nothing is checked at half the spacing. Columns:
 
@@ -13,6 +13,8 @@ search      the same by the search with the job's wheel (`--wheels own`)
 search s    seconds that took
 way         what the search chose: along and belt angle, degrees
 of it       search, of what is reachable, %
+random      with --random N: the best of N random settings, by rough plans as the search has them, then planned with all samples, %
+random s    seconds that took
 """
 
 import argparse
@@ -24,10 +26,14 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 
-from beltgrinding.engine import InputError
+import numpy as np
+
+from beltgrinding.base.crew import Call, Crew, End
+from beltgrinding.engine import InputError, core
 from beltgrinding.job import load as jobs, workpiece
-from beltgrinding.planning import grinding, search, wheels
-from beltgrinding.raster import proposal
+from beltgrinding.job.typed import typed
+from beltgrinding.planning import grinding, rough, rounds, search, tasks, wheels
+from beltgrinding.raster import proposal, raster_path, reach_map
 from plan_bench import STOCK, uneven
 
 PARTS = Path(os.environ.get("BELTGRINDING_SHARED", ROOT.parent / "shared")) / "data" / "cad"
@@ -99,16 +105,61 @@ def measure(job, first, budget):
     }
 
 
+def drawn(data, first, count):
+    """Random settings as ``rough.Move``s: the geometry's ways and the parameters' own directions, all belt angles and leans,
+    step-overs and run-outs around the usual ones, forces from 1 N to twice the first."""
+    rng = np.random.default_rng(count)
+    ways = reach_map.ways(data, first, core.RunContext())
+    force = data["belt_machine"]["force_N"]
+    moves = []
+    for _ in range(count):
+        settings = {
+            **first,
+            **ways[rng.integers(len(ways))],
+            "belt_angle_deg": float(rng.integers(-8, 9) * 11.25),
+            "step_over_share": float(rng.uniform(0.2, 0.9)),
+            "step_over_mm": 0.0,
+            "run_out_mm": float(rng.normal(0.0, 2.0)),
+            "max_tilt_deg": float(rng.uniform(0.0, 15.0)),
+        }
+        pressed = {
+            **data["belt_machine"],
+            "force_N": float(np.exp(rng.uniform(0.0, np.log(2.0 * force)))),
+        }
+        moves.append(("random", pressed, settings))
+    return moves
+
+
+def by_chance(job, first, count):
+    """(of the area, in tolerance by a plan with all samples, with the best of ``count`` random settings; seconds)."""
+    begun = time.perf_counter()
+    settings = grinding.with_forces(typed(job), rounds.validate(QUICK))
+    data, settings = rounds.in_time(job, settings)
+    data = rounds.settled(data, core.RunContext())
+    with Crew() as crew, tempfile.NamedTemporaryFile() as going:
+        until = End(float("inf"), going.name)
+        moves = drawn(data, raster_path.validate(first), count)
+        calls = [Call(tasks.alone, (tasks.soon, data, until, move, settings)) for move in moves]
+        found = [one.value for one in crew.run(calls) if one is not None and one.value is not None]
+    best = max(found, key=lambda one: one.in_tolerance)
+    data = rough.with_machine(data, best.machine, best.wanted, settings)
+    laid = rough.lay(data, best.wanted, settings, core.RunContext())
+    plan = rounds.plan(rough.with_path(data, laid), settings, start=best.start)
+    return plan.after.summary["in_tolerance_area_share"], time.perf_counter() - begun
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("part", nargs="?", default="", help="only this one")
     parser.add_argument("--uneven", action="store_true", help="stock in waves")
     parser.add_argument("--budget", type=float, default=search.BUDGET_S, metavar="S")
+    parser.add_argument("--random", type=int, default=0, metavar="N", help="settings by chance")
     parser.add_argument("--json", metavar="FILE")
     arguments = parser.parse_args()
     rows = []
-    print("| part | faces | stock | " + " | ".join(HEAD) + " |")
-    print("| --- " * (3 + len(HEAD)) + "|", flush=True)
+    head = (*HEAD, "random", "random s") if arguments.random else HEAD
+    print("| part | faces | stock | " + " | ".join(head) + " |")
+    print("| --- " * (3 + len(head)) + "|", flush=True)
     for name, faces in SETS:
         if arguments.part not in name:
             continue
@@ -121,11 +172,14 @@ def main():
             try:
                 given = job_of(file, faces, STOCK, folder, arguments.uneven)
                 row = measure(*given, arguments.budget)
+                if arguments.random:
+                    share, seconds = by_chance(*given, arguments.random)
+                    row.update({"random": 100.0 * share, "random s": seconds})
             except InputError as error:
                 print(f"| {name} | {faces} | {stock} | {error} |", flush=True)
                 continue
         rows.append({"part": name, "faces": faces, "stock": stock, **row})
-        cells = [row[k] if isinstance(row[k], str) else f"{row[k]:.1f}" for k in HEAD]
+        cells = [row[k] if isinstance(row[k], str) else f"{row[k]:.1f}" for k in head]
         told = ", ".join(map(str, faces))
         print(f"| {name} | {told} | {stock} | " + " | ".join(cells) + " |", flush=True)
     if arguments.json:

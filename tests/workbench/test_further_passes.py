@@ -116,7 +116,7 @@ def test_too_many_poses_are_refused(monkeypatch):
 
 @pytest.mark.slow
 def test_a_search_adds_a_group_where_one_way_does_not_do(monkeypatch):
-    for name, count in {"FIRST": 4, "LEADERS": 1, "FINALS": 2, "OF_A_GROUP": 3}.items():
+    for name, count in {"LEADERS": 1, "FINALS": 2, "OF_A_GROUP": 3, "PATIENCE": 2}.items():
         monkeypatch.setattr(search, name, count)
     monkeypatch.setattr(by_rules, "TRIES", 1)
     job = job_with(troughs())

@@ -60,7 +60,7 @@ def job_of(shape, radius=20.0, width=5.0, spacing=1.2, allowance=0.15, tolerance
 @pytest.fixture
 def small(monkeypatch):
     """Few candidates."""
-    for name, count in {"LEADERS": 2, "FINALS": 2, "FURTHER": 1}.items():
+    for name, count in {"LEADERS": 2, "FINALS": 2, "FURTHER": 1, "PATIENCE": 2}.items():
         monkeypatch.setattr(search, name, count)
     monkeypatch.setattr(by_rules, "TRIES", 1)
 
@@ -203,7 +203,7 @@ def tried(machine=None, shares=None, gentler=(0.0, 1.0), levels=9, **wanted):
 
 def test_moves_answer_to_what_stays_out():
     def names(one, fixed=()):
-        return sorted(move[0] for _, move in moves.Moves(fixed)(one))
+        return sorted(move[0] for _, move in moves.Moves(fixed)(one) if move[0] != "near")
 
     assert names(tried()) == []
     hidden = tried(shares={"no_room": 0.3})
@@ -212,6 +212,26 @@ def test_moves_answer_to_what_stays_out():
     leaned = tried(shares={"shared": 0.2}, belt_angle_deg=90.0)
     told = {move[0]: move[2] for _, move in moves.Moves()(leaned)}
     assert told["lean"]["max_tilt_deg"] == 5.0 and told["belt_angle"]["belt_angle_deg"] == 67.5
+
+
+def test_what_is_a_little_different_is_tried_last_the_same_each_time():
+    def near(one, *given):
+        found = sorted(moves.Moves(*given)(one), key=lambda pair: -pair[0])
+        last = [move for share, move in found if share == 0.0]
+        assert found[len(found) - len(last) :] == [(0.0, move) for move in last]
+        return last
+
+    assert near(tried()) == []  # nothing stays out
+    one = tried(shares={"border": 0.2})
+    found = near(one)
+    assert len(found) > 5 and found == near(one) and found != near(one, (), 1)
+    changed = {key for move in found for key, value in move[2].items() if value != one.wanted[key]}
+    assert changed <= {"run_out_mm", "step_over_mm", "belt_angle_deg", "direction"}
+    kept = near(one, ("run_out_mm", "direction", "along"))
+    assert {key for move in kept for key, value in move[2].items() if value != one.wanted[key]} <= {
+        "step_over_mm",
+        "belt_angle_deg",
+    }
 
 
 def test_less_force_at_borders_is_tried_where_the_program_sets_forces():

@@ -172,6 +172,7 @@ class End(NamedTuple):
     at: float  # s of the monotonic clock, which they have in common
     file: str = ""  # is there as long as it may; "": by the clock alone
 
-    def passed(self) -> bool:
-        """For ``over``."""
-        return time.monotonic() >= self.at or (bool(self.file) and not Path(self.file).exists())
+    def passed(self, lasts: float = 0.0) -> bool:
+        """For ``over``; whether something that ``lasts`` so many s would not end by then."""
+        late = time.monotonic() + lasts >= self.at
+        return late or (bool(self.file) and not Path(self.file).exists())

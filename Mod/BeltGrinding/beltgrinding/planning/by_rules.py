@@ -36,19 +36,21 @@ def climb(
     context: core.RunContext | None = None,
     before: Tried | None = None,
     over: Callable[[], bool] | None = None,
-    patient: bool = False,
+    patience: int = 0,
+    seen: set[str] | None = None,
 ) -> tuple[Tried, list[dict[str, Any]]]:
     """Climb from passes to better ones. Returns (the best; a row of figures for each that was tried).
 
-    At most ``TRIES`` are tried; if ``patient``, as long as one of ``TRIES`` is better.
+    At most ``TRIES`` are tried; with ``patience``, as long as one of so many is better.
 
     Begins with ``first``, or with ``before``, which was tried, and goes on from the best with what may mend it, the
-    likeliest first. ``moves``: what may be tried besides ``others``; ``over()``: whether the best so far is enough.
+    likeliest first. What was ``seen`` is not tried, and what is tried is added to it. ``moves``: what may be tried besides ``others``; ``over()``: whether the best so far is enough.
     Raises InputError where ``first`` cannot be laid, Cancelled.
     """
     context = context or core.RunContext()
     best, rows = before, list[dict[str, Any]]()
-    seen, left = set[str](), TRIES
+    most = patience or TRIES
+    seen, left = set[str]() if seen is None else seen, most
     queue: list[Move] = [first] if before is None else _following(before, moves)
     while queue and left > 0:
         if best is not None and over is not None and over():
@@ -58,7 +60,7 @@ def climb(
         if key in seen:
             continue
         seen.add(key)
-        part = context.part(1.0 - left / TRIES, 1.0 - (left - 1) / TRIES)
+        part = context.part(1.0 - left / most, 1.0 - (left - 1) / most)
         try:
             one = attempt(data, move, settings, zones, part)
         except InputError:
@@ -71,7 +73,7 @@ def climb(
             told(rows[-1])
         left -= 1
         if better:
-            left = TRIES if patient else left
+            left = patience or left
             best = one
             queue = _following(one, moves)
     return known(best), rows

@@ -1,8 +1,9 @@
-"""What a search tries besides the rules: other directions, belt angles, leans and narrower wheels."""
+"""What a search tries besides the rules: other directions, belt angles, leans and, by chance, what is a little different."""
 
 from __future__ import annotations
 
 import math
+import zlib
 from collections.abc import Collection
 from typing import Any
 
@@ -15,13 +16,18 @@ TURN_DEG = 22.5  # from the best direction, and from the best belt angle
 HALF_TURN = 180.0  # degrees of the belt's angle: the belt's travel the other way round is the same to the part
 LESS_LEAN = 1.0 / 3.0  # of the lean
 GUESS = 0.3  # of what stays out for other reasons: a turn may mend it
+NEIGHBOURS = 10  # by chance, after all else
+# Their standard deviations: of the contact's length, of the step-over's logarithm, degrees.
+RUN_OUT, STEP_OVER, TURNED_DEG = 0.1, 0.2, 12.0
+CHANGED = 0.5  # of the settings, in each neighbour
 
 
 class Moves:
-    """Calls give [(of the area, that it may mend, Move)] of a ``Tried``. ``fixed``: settings of the raster that stay."""
+    """Calls give [(of the area, that it may mend, Move)] of a ``Tried``. ``fixed``: settings of the raster that stay; ``lap``:
+    others by chance."""
 
-    def __init__(self, fixed: Collection[str] = ()) -> None:
-        self.fixed = frozenset(fixed)
+    def __init__(self, fixed: Collection[str] = (), lap: int = 0) -> None:
+        self.fixed, self.lap = frozenset(fixed), lap
 
     def __call__(self, one: Tried) -> list[tuple[float, Move]]:
         shares = one.shares
@@ -34,7 +40,37 @@ class Moves:
         if one.wanted["max_tilt_deg"] > 0.0 and shares["shared"] + shares["fringe"] > MATTERS:
             lean = round(LESS_LEAN * one.wanted["max_tilt_deg"], 1)
             found += self._changed(one, 0.1 * left, "lean", "max_tilt_deg", lean)
+        if sum(shares.values()) > MATTERS:
+            found += [(0.0, move) for move in self._near(one)]
         return found
+
+    def _near(self, one: Tried) -> list[Move]:
+        """Passes by chance, the same on every machine: rules leave out what lies between their steps."""
+        wanted = one.wanted
+        seed = zlib.crc32(repr(sorted(wanted.items())).encode())
+        by = np.random.default_rng((seed, self.lap))
+        moves: list[Move] = []
+        for _ in range(NEIGHBOURS):
+            by_run_out, by_step_over, by_angle, by_turn = by.normal(size=4)
+            changed = {
+                "run_out_mm": round(wanted["run_out_mm"] + RUN_OUT * one.length_mm * by_run_out, 3),
+                "step_over_mm": round(one.step_over_mm * math.exp(STEP_OVER * by_step_over), 3),
+                "belt_angle_deg": round(
+                    half_turn(wanted["belt_angle_deg"] + TURNED_DEG * by_angle), 1
+                ),
+            }
+            if wanted["along"] == "direction" and one.looks.any():
+                way = turned(wanted["direction"], one.looks, TURNED_DEG * by_turn)
+                changed["direction"] = way if "along" not in self.fixed else wanted["direction"]
+            taken = by.random(len(changed)) < CHANGED
+            kept = {
+                key: value
+                for (key, value), yes in zip(changed.items(), taken)
+                if yes and key not in self.fixed
+            }
+            if kept:
+                moves.append(("near", one.machine, {**wanted, **kept}))
+        return moves
 
     def _changed(
         self, one: Tried, share: float, name: str, key: str, value: Any

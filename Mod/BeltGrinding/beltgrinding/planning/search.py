@@ -38,6 +38,8 @@ ENOUGH = 0.995  # of the area: nothing else is tried
 # Of the budget.
 GLANCES_UNTIL, COARSE_UNTIL, RULES_UNTIL, GROUPS_UNTIL, FULL_UNTIL = 0.2, 0.35, 0.55, 0.7, 0.9
 TO_END = 0.1  # of the budget, in which what is being tried then may end
+PATIENCE = 20  # passes that rules try from one without finding better ones
+LAST = 2.0  # times what full plans took: what they and the last rounds take once more
 GROUPS, OF_A_GROUP = 3, 4  # further groups of passes; ways and belt angles that are tried for each
 FURTHER = 4  # wheels of which is planned what they would bring
 PROCESS_BYTES, SAMPLE_BYTES = 4e8, 3_000.0  # of a process, and for each sample
@@ -131,6 +133,7 @@ class _Run:
         self.rows: list[dict[str, Any]] = []  # in the order of the calls
         self.shown = 0.0  # the best share that was told
         self.through = True
+        self.lap, self.seen = 0, set[str]()  # of rules; what they have tried
 
     def found(self) -> Found:
         own, others, further = self._looked()
@@ -138,8 +141,18 @@ class _Run:
         default, coarse = self._coarse(start, candidates(own, others, start, self.search.fixed))
         mine = [one for one in coarse if one.machine["wheel"] == own.machine["wheel"]]
         wheels = self._brought(further, own, mine)
-        default, tried = self._ruled(default, coarse)
+        default, tried = self._ruled(default, coarse, RULES_UNTIL + TO_END)
+        begun = self._spent()
         best = self._finals(default, self._grouped(tried))
+        # What is left of the budget, but for as much once more, and the last rounds.
+        until = 1.0 - LAST * (self._spent() - begun)
+        while self.search.budget_s < UNTIL_IT_PAYS and not self._over(until - TO_END):
+            before, self.lap = _most(tried), self.lap + 1
+            default, tried = self._ruled(default, tried, until)
+            if not _most(tried) > before:
+                break
+            again = self._finals(default, tried)
+            best = max(best, again, key=lambda one: one.in_tolerance)
         fits = [one.map.fits for one in (own, *others, *further)]
         return Found(
             best=best,
@@ -161,6 +174,17 @@ class _Run:
     def _until(self, share: float) -> End:
         """When that share of the budget is spent, or who asked wants no more."""
         return End(self.begun + share * self.search.budget_s, str(self.going))
+
+    def _part(self, begins: float, ends: float) -> tuple[float, float]:
+        """Of the progress: each lap takes half of what is left."""
+        if not self.lap:
+            return begins, ends
+        left = 0.1 * 0.5 ** (self.lap - 1)
+        return 1.0 - left * (1.0 - 0.5 * begins), 1.0 - left * (1.0 - 0.5 * ends)
+
+    def _spent(self) -> float:
+        """Of the budget."""
+        return (time.monotonic() - self.begun) / self.search.budget_s
 
     def _over(self, share: float) -> bool:
         """Whether that share of the budget is spent, or who asked wants no more."""
@@ -292,22 +316,24 @@ class _Run:
         return [_brings(one, shares.get(id(one)), mine) for one in further]
 
     def _ruled(
-        self, default: Tried | None, coarse: list[Tried]
+        self, default: Tried | None, coarse: list[Tried], until: float
     ) -> tuple[Tried | None, list[Tried]]:
-        """What the rules find from the start, and from it and the best with what they began with, the best first."""
+        """What the rules find from the start until that share of the budget, and from it and the best with what they began with, the
+        best first."""
         first = [] if default is None else [default]
-        leaders = [*first, *coarse[: LEADERS - len(first)]]
-        moves = (Moves(self.search.fixed),)
+        others = _different([one for one in coarse if not any(_same(one, own) for own in first)])
+        leaders = [*first, *others[: LEADERS - len(first)]]
+        moves, end = (Moves(self.search.fixed, self.lap),), self._until(until)
         calls = []
         for one in leaders:
             begun: Move = (one.change, one.machine, one.wanted)
-            options = (begun, self.settings, self.zones, moves, one)
-            calls.append(self._call(tasks.ruled, self._until(RULES_UNTIL), *options))
-        values = self._run(calls, RULES_UNTIL + TO_END, (0.5, 0.7))
+            options = (begun, self.settings, self.zones, moves, one, self.seen, PATIENCE)
+            calls.append(self._call(tasks.ruled, end, *options))
+        values = self._run(calls, until, self._part(0.5, 0.7))
         climbed = [one if value is None else value[0] for one, value in zip(leaders, values)]
-        return climbed[0] if first else None, _best_first(
-            [*climbed, *coarse[len(leaders) - len(first) :]]
-        )
+        self.seen |= set().union(*(value[2] for value in values if value is not None))
+        rest = others[len(leaders) - len(first) :]
+        return climbed[0] if first else None, _best_first([*climbed, *rest])
 
     def _grouped(self, tried: list[Tried]) -> list[Tried]:
         """Those that were tried, and before them the best with further groups of passes, their ways and belt angles by what the wheel
@@ -341,10 +367,7 @@ class _Run:
 
     def _finals(self, default: Tried | None, tried: list[Tried]) -> Tried:
         """The best of full plans of the best, what the rules found from the start among them unless it is far behind."""
-        chosen: list[Tried] = []
-        for one in tried:
-            if all(_same(one, other) is False for other in chosen) and len(chosen) < FINALS:
-                chosen.append(one)
+        chosen = _different(tried)[:FINALS]
         if default is not None and not any(_same(default, one) for one in chosen):
             if not chosen or default.in_tolerance > chosen[0].in_tolerance - FAR_BEHIND:
                 chosen = sorted([*chosen[: FINALS - 1], default], key=lambda one: -one.in_tolerance)
@@ -352,8 +375,14 @@ class _Run:
         calls = [self._call(tasks.full, until, one, self.settings, self.zones) for one in chosen]
         own = [k for k, one in enumerate(chosen) if default is not None and _same(one, default)]
         needed = 1 + max(own, default=0)
-        values = [one for one in self._run(calls, 1.0, (0.7, 1.0), needed) if one is not None]
+        values = [
+            one for one in self._run(calls, 1.0, self._part(0.7, 0.9), needed) if one is not None
+        ]
         return max(values, key=lambda one: one.in_tolerance)
+
+
+def _most(tried: Sequence[Tried]) -> float:
+    return max((one.in_tolerance for one in tried), default=0.0)
 
 
 def _best_first(values: Sequence[Tried | None]) -> list[Tried]:
@@ -371,6 +400,15 @@ def _rows(value: Any) -> list[dict[str, Any]]:
 def _done(answer: Answer | None) -> bool:
     """Whether a call was worked at."""
     return answer is not None and (answer.value is not None or answer.error is not None)
+
+
+def _different(tried: Sequence[Tried]) -> list[Tried]:
+    """Each once, in their order."""
+    found: list[Tried] = []
+    for one in tried:
+        if not any(_same(one, other) for other in found):
+            found.append(one)
+    return found
 
 
 def _same(one: Tried, other: Tried) -> bool:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Collection
 from typing import Any
 
 from ..base.crew import End
@@ -27,11 +28,31 @@ def ruled(
     zones: Zones | None,
     moves: tuple[Moves, ...] = (),
     before: Tried | None = None,
-) -> tuple[Tried, list[dict[str, Any]]]:
-    """As ``by_rules.climb``; nothing new is tried after ``until``."""
-    return by_rules.climb(
-        data, first, settings, zones, moves, before=before, over=until.passed, patient=True
+    seen: Collection[str] = (),
+    patience: int = 0,
+) -> tuple[Tried, list[dict[str, Any]], set[str]]:
+    """As ``by_rules.climb``, but for what was ``seen``; and what it has seen besides. Nothing new is tried that would not end until
+    ``until``, as long as others took."""
+    began, longest, known = time.monotonic(), 0.0, set(seen)
+
+    def told(_: dict[str, Any]) -> None:
+        nonlocal began, longest
+        now = time.monotonic()
+        began, longest = now, max(longest, now - began)
+
+    best, rows = by_rules.climb(
+        data,
+        first,
+        settings,
+        zones,
+        moves,
+        told,
+        before=before,
+        over=lambda: until.passed(longest),
+        patience=patience,
+        seen=known,
     )
+    return best, rows, known
 
 
 def begun(

@@ -106,7 +106,7 @@ def measure(job, first, budget):
 
 
 def drawn(data, first, count):
-    """Random settings as ``rough.Move``s: the geometry's ways and the parameters' own directions, all belt angles and leans,
+    """Random settings as ``rough.Move``s: all ways that the search looks at, all belt angles and leans,
     step-overs and run-outs around the usual ones, forces from 1 N to twice the first."""
     rng = np.random.default_rng(count)
     ways = reach_map.ways(data, first, core.RunContext())
@@ -136,11 +136,12 @@ def by_chance(job, first, count):
     settings = grinding.with_forces(typed(job), rounds.validate(QUICK))
     data, settings = rounds.in_time(job, settings)
     data = rounds.settled(data, core.RunContext())
-    with Crew() as crew, tempfile.NamedTemporaryFile() as going:
-        until = End(float("inf"), going.name)
-        moves = drawn(data, raster_path.validate(first), count)
-        calls = [Call(tasks.alone, (tasks.soon, data, until, move, settings)) for move in moves]
+    with Crew() as crew:
+        moves, never = drawn(data, raster_path.validate(first), count), End(float("inf"))
+        calls = [Call(tasks.alone, (tasks.begun, data, never, move, settings)) for move in moves]
         found = [one.value for one in crew.run(calls) if one is not None and one.value is not None]
+    if not found:  # on none of them passes can be laid
+        return 0.0, time.perf_counter() - begun
     best = max(found, key=lambda one: one.in_tolerance)
     data = rough.with_machine(data, best.machine, best.wanted, settings)
     laid = rough.lay(data, best.wanted, settings, core.RunContext())

@@ -44,8 +44,8 @@ def climb(
     At most ``TRIES`` are tried; with ``patience``, as long as one of so many is better.
 
     Begins with ``first``, or with ``before``, which was tried, and goes on from the best with what may mend it, the
-    likeliest first. What was ``seen`` is not tried, and what is tried is added to it. ``moves``: what may be tried besides ``others``; ``over()``: whether the best so far is enough.
-    Raises InputError where ``first`` cannot be laid, Cancelled.
+    likeliest first. What was ``seen`` is not tried, and what is tried is added to it. ``moves``: what may be tried
+    besides ``others``; ``over()``: whether the best so far is enough. Raises InputError where ``first`` cannot be laid, Cancelled.
     """
     context = context or core.RunContext()
     best, rows = before, list[dict[str, Any]]()

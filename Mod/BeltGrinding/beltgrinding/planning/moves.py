@@ -59,9 +59,9 @@ class Moves:
                     half_turn(wanted["belt_angle_deg"] + TURNED_DEG * by_angle), 1
                 ),
             }
-            if wanted["along"] == "direction" and one.looks.any():
+            if self._turns(one):
                 way = turned(wanted["direction"], one.looks, TURNED_DEG * by_turn)
-                changed["direction"] = way if "along" not in self.fixed else wanted["direction"]
+                changed["direction"] = way
             taken = by.random(len(changed)) < CHANGED
             kept = {
                 key: value
@@ -79,10 +79,14 @@ class Moves:
             return []
         return [(share, (name, one.machine, {**one.wanted, key: value}))]
 
+    def _turns(self, one: Tried) -> bool:
+        """Whether its direction may be turned, and there is something to turn it about."""
+        if {"along", "direction"} & self.fixed:
+            return False
+        return one.wanted["along"] == "direction" and bool(one.looks.any())
+
     def _turned(self, one: Tried) -> list[Move]:
-        if "direction" in self.fixed or "along" in self.fixed:
-            return []
-        if one.wanted["along"] != "direction" or not one.looks.any():
+        if not self._turns(one):
             return []
         ways = [turned(one.wanted["direction"], one.looks, sign * TURN_DEG) for sign in (1.0, -1.0)]
         return [("direction", one.machine, {**one.wanted, "direction": way}) for way in ways]

@@ -23,9 +23,9 @@ from ..job.typed import typed
 from ..job.workpiece import read_design
 from ..raster import reach_map
 from . import rough, tasks
-from .rough import Move, Tried, Zones
 from .candidates import Seen, candidates, further_groups, of_further
 from .moves import Moves
+from .rough import Move, Tried, Zones
 
 BUDGET_S = 120.0
 UNTIL_IT_PAYS = float("inf")  # s: as long as a generation of rough plans brings GAIN
@@ -134,6 +134,7 @@ class _Run:
         self.shown = 0.0  # the best share that was told
         self.through = True
         self.lap, self.seen = 0, set[str]()  # of rules; what they have tried
+        self.planned: list[Tried] = []  # in full
 
     def found(self) -> Found:
         own, others, further = self._looked()
@@ -142,8 +143,9 @@ class _Run:
         mine = [one for one in coarse if one.machine["wheel"] == own.machine["wheel"]]
         wheels = self._brought(further, own, mine)
         default, tried = self._ruled(default, coarse, RULES_UNTIL + TO_END)
+        tried = self._grouped(tried)
         begun = self._spent()
-        best = self._finals(default, self._grouped(tried))
+        best = self._finals(default, tried)
         # What is left of the budget, but for as much once more, and the last rounds.
         until = 1.0 - LAST * (self._spent() - begun)
         while self.search.budget_s < UNTIL_IT_PAYS and not self._over(until - TO_END):
@@ -184,7 +186,7 @@ class _Run:
 
     def _spent(self) -> float:
         """Of the budget."""
-        return (time.monotonic() - self.begun) / self.search.budget_s
+        return (time.monotonic() - self.begun) / max(self.search.budget_s, 1e-9)
 
     def _over(self, share: float) -> bool:
         """Whether that share of the budget is spent, or who asked wants no more."""
@@ -201,7 +203,7 @@ class _Run:
         told: bool = True,
     ) -> list[Any]:
         """Values of the calls, None of those that failed or were not done until that share of the budget; the first ``needed`` are done in
-        any case. ``told``: whether the others, too, are shown and kept as rows."""
+        any case. ``told``: the others are shown and kept as rows as well."""
         left, enough = set(range(needed)), False
 
         def taken(number: int, answer: Answer) -> None:
@@ -366,11 +368,14 @@ class _Run:
         return tried
 
     def _finals(self, default: Tried | None, tried: list[Tried]) -> Tried:
-        """The best of full plans of the best, what the rules found from the start among them unless it is far behind."""
+        """The best of full plans of the best that have none yet, what the rules found from the start among them unless it is far
+        behind."""
         chosen = _different(tried)[:FINALS]
         if default is not None and not any(_same(default, one) for one in chosen):
             if not chosen or default.in_tolerance > chosen[0].in_tolerance - FAR_BEHIND:
                 chosen = sorted([*chosen[: FINALS - 1], default], key=lambda one: -one.in_tolerance)
+        chosen = [one for one in chosen if not any(_same(one, done) for done in self.planned)]
+        self.planned += chosen
         until = self._until(FULL_UNTIL)
         calls = [self._call(tasks.full, until, one, self.settings, self.zones) for one in chosen]
         own = [k for k, one in enumerate(chosen) if default is not None and _same(one, default)]

@@ -348,3 +348,23 @@ def test_a_message_of_limits_names_the_field():
     text = error_text(told.value)
     assert "“Belt machine: Wheel radius”" in text, text
     assert "WheelRadius" not in text and "radius_mm" not in text, text
+
+
+@pytest.mark.parametrize("opened", ["double click", "menu"])
+def test_cancel_takes_back_no_more_than_its_panel_did(opened):
+    """Also where a document was closed within an undo step, which FreeCAD keeps open for the next one."""
+    FreeCAD.newDocument("Closed").openTransaction("left over")
+    FreeCAD.closeDocument("Closed")
+    assert FreeCAD.getActiveTransaction()
+    start()
+    job = beltgrinding.open_example(Path.cwd() / "example")
+    machine = job.Document.BeltMachine
+    names = [obj.Name for obj in job.Document.Objects]
+    if opened == "menu":
+        menu("Belt machine")
+    else:
+        machine.ViewObject.Proxy.doubleClicked(machine.ViewObject)
+    type_in("Force", "36 N")
+    press("Cancel")
+    assert [obj.Name for obj in job.Document.Objects] == names
+    assert machine.Force.getValueAs("N") == 30

@@ -1,7 +1,6 @@
 """What fuzzing the readers of programs (tests/fuzz/fuzz_programs.py) once found."""
 
 import time
-from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -32,12 +31,26 @@ def ordinary(tmp_path_factory):
     return cost(lambda: read(folder, "a.src", text))
 
 
-@contextmanager
-def soon(ordinary, times=5):
-    """What happens in it takes no longer than ``times`` the reading of 20,000 motions."""
-    begin = time.process_time()
-    yield
-    assert time.process_time() - begin < times * ordinary
+def soon(ordinary, work, times=5):
+    """What ``work()`` gives: it takes no longer than ``times`` the reading of 20,000 motions, by the least of three."""
+    least = float("inf")
+    for _ in range(3):
+        begin = time.process_time()
+        found = work()
+        least = min(least, time.process_time() - begin)
+        if least < times * ordinary:
+            return found
+    pytest.fail(f"{least:.2f} s, of 20,000 motions {ordinary:.2f} s")
+
+
+def refused_soon(ordinary, match, work):
+    """``work()`` is refused, no later than ``soon``."""
+
+    def refused():
+        with pytest.raises(ProgramError, match=match):
+            work()
+
+    soon(ordinary, refused)
 
 
 @pytest.mark.parametrize(
@@ -100,11 +113,8 @@ LOOPS = {
 
 @pytest.mark.parametrize("name", LOOPS)
 def test_endless_work_is_refused_soon(tmp_path, ordinary, name):
-    with soon(ordinary):
-        with pytest.raises(
-            ProgramError, match=rf"{name}:\d+: .*(too long|too deeply|does not end)"
-        ):
-            read(tmp_path, name, LOOPS[name])
+    match = rf"{name}:\d+: .*(too long|too deeply|does not end)"
+    refused_soon(ordinary, match, lambda: read(tmp_path, name, LOOPS[name]))
 
 
 def test_a_loop_over_all_points_of_a_file_is_followed(tmp_path):
@@ -124,8 +134,7 @@ def test_a_loop_without_its_end_is_followed_once(tmp_path):
 
 def test_a_huge_array_is_not_made(tmp_path, ordinary):
     text = f"MODULE a\nVAR robtarget p{{1000,1000}};\nPROC main()\n{MOVE}ENDPROC\nENDMODULE"
-    with soon(ordinary, 1):
-        assert len(read(tmp_path, "a.mod", text).motions) == 1
+    assert len(soon(ordinary, lambda: read(tmp_path, "a.mod", text), 1).motions) == 1
 
 
 def test_a_head_that_swallows_a_statement_is_refused(tmp_path):
@@ -198,11 +207,9 @@ def val3(tmp_path, code, fathers=("world[0]", "world[0]")):
 
 def test_an_endless_val3_loop_is_refused_soon(tmp_path, ordinary):
     (tmp_path / "b.pgx").write_text(VAL3.format("return\n" + "x=1\n" * 1000).replace('"a"', '"b"'))
-    with soon(ordinary):
-        with pytest.raises(ProgramError, match=r"a.pgx:\d+: .*(too long|not end)"):
-            val3(tmp_path, "for l_n=1 to 9E9\nmovel(p[0],t[0],m[0])\nendFor\n")
-        with pytest.raises(ProgramError, match=r"[ab].pgx:\d+: .*(too long|not end)"):
-            val3(tmp_path, "for l_n=1 to 9E9\ncall b()\nendFor\n")
+    for body in ("movel(p[0],t[0],m[0])", "call b()"):
+        code = f"for l_n=1 to 9E9\n{body}\nendFor\n"
+        refused_soon(ordinary, r"[ab].pgx:\d+: .*(too long|not end)", lambda: val3(tmp_path, code))
 
 
 @pytest.mark.parametrize("fathers", [("nowhere", "f[#1]"), ("p", "t"), ("f[http]", "world[0]")])
@@ -226,5 +233,8 @@ def test_an_endless_polyscope_loop_is_refused_soon(tmp_path, ordinary):
         + inner.format(inner.format("<Comment/>"))
         + "</children></MainProgram></children></URProgram>"
     )
-    with soon(ordinary), pytest.raises(ProgramError, match="a.urp:1: the program is too long"):
-        read(tmp_path, "a.urp", text)
+    refused_soon(
+        ordinary,
+        "a.urp:1: the program is too long",
+        lambda: read(tmp_path, "a.urp", text),
+    )

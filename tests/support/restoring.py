@@ -22,6 +22,7 @@ def restore():
         hands.put_away()
     for name in list(FreeCAD.listDocuments()):
         FreeCAD.closeDocument(name)
+    FreeCAD.closeActiveTransaction(False)  # one that has changed nothing outlives its document
     if FreeCAD.GuiUp:
         hands.bury()  # or the dialogs would hold their panels
     gc.collect()

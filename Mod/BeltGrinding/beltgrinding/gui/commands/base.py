@@ -18,7 +18,7 @@ from ..common.compat import translate
 from ..common.icons import icon
 from ..common.greyed import say_reason
 from ..common.messages import report
-from ..common.transaction import transaction
+from ..common.transaction import end_left_over, transaction
 
 if TYPE_CHECKING:
     from ...objects.proxy import Proxy
@@ -133,6 +133,7 @@ class Command:
 
     def Activated(self, index: int = 0) -> None:
         try:
+            end_left_over()
             job = active_job()
             if job is not None:
                 activate(job)

@@ -14,7 +14,7 @@ from ..common.file_filters import programs_filter
 from ..common.messages import error_text, inform
 from ..common.save_dialog import file_to_write
 from ..common.transaction import transaction
-from ..common.editing import edit
+from ..common.editing import edit_in_step
 from .base import active_job, make, make_once, no_document
 
 
@@ -29,7 +29,7 @@ def choose_program() -> None:
 def import_program(job: DocumentObject, path: str) -> None:
     """Imports a program's file into the job in a transaction and opens its panel."""
     title = translate("BeltGrinding", "Import robot program")
-    make(job.Document, title, lambda: api.import_program(job, path), edit)
+    make(job.Document, title, lambda: api.import_program(job, path), edit_in_step)
 
 
 def follow_selected() -> None:
@@ -44,7 +44,7 @@ def follow_selected() -> None:
             "gui.select_path", "Select one CAM path or robot trajectory in the tree first."
         )
     title = translate("BeltGrinding", "Follow selected path")
-    make(job.Document, title, lambda: api.follow_path(job, sources[0]), edit)
+    make(job.Document, title, lambda: api.follow_path(job, sources[0]), edit_in_step)
 
 
 def make_raster() -> None:
@@ -55,7 +55,7 @@ def make_raster() -> None:
         if hasattr(one.Object, "Shape") and any(s.startswith("Face") for s in one.SubElementNames)
     ]
     title = translate("BeltGrinding", "Raster path")
-    make(job.Document, title, lambda: api.make_raster(job, faces, compute=False), edit)
+    make(job.Document, title, lambda: api.make_raster(job, faces, compute=False), edit_in_step)
 
 
 def read_again() -> None:

@@ -10,7 +10,7 @@ from ...objects.kinds import DocumentObject
 from ..common.compat import translate
 from ..common.transaction import commit
 from ..common.task_panel import show_panel
-from ..common.editing import edit
+from ..common.editing import edit_in_step
 from .base import active_job, make, make_once
 from .set_up import new_job
 
@@ -63,7 +63,7 @@ def grind_faces() -> None:
 
 
 def show_deviation() -> None:
-    make_once(deviation.Deviation, translate("BeltGrinding", "Deviation"), _deviation, edit)
+    make_once(deviation.Deviation, translate("BeltGrinding", "Deviation"), _deviation, edit_in_step)
 
 
 def _deviation(job: DocumentObject) -> DocumentObject:

@@ -12,14 +12,14 @@ from ..common.chosen import activate
 from ..common.compat import translate
 from ..common.transaction import transaction
 from ..common.task_panel import show_panel
-from ..common.editing import edit
+from ..common.editing import edit_in_step
 from .base import active_job, expand, make, make_once
 
 
 def edit_new_job() -> None:
     job = new_job()
     if job is not None:
-        edit(job)
+        edit_in_step(job)
 
 
 def new_job() -> DocumentObject | None:
@@ -51,11 +51,11 @@ def new_job() -> DocumentObject | None:
 
 
 def edit_stock() -> None:
-    make_once(stock.Stock, "Stock", api.make_stock, edit)
+    make_once(stock.Stock, "Stock", api.make_stock, edit_in_step)
 
 
 def edit_machine() -> None:
-    make_once(belt_machine.BeltMachine, "Belt machine", api.make_belt_machine, edit)
+    make_once(belt_machine.BeltMachine, "Belt machine", api.make_belt_machine, edit_in_step)
 
 
 def show_cell() -> None:
@@ -73,4 +73,4 @@ def show_cell() -> None:
 
 def edit_belt() -> None:
     job = active_job()
-    make(job.Document, translate("BeltGrinding", "Belt"), lambda: api.make_belt(job), edit)
+    make(job.Document, translate("BeltGrinding", "Belt"), lambda: api.make_belt(job), edit_in_step)

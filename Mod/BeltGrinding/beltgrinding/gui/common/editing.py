@@ -7,10 +7,17 @@ import FreeCADGui as Gui
 
 from ...objects.kinds import DocumentObject
 from .compat import translate
+from .transaction import end_left_over
 
 
 def edit(obj: DocumentObject) -> None:
     """Opens the panel of an object, as a double click does, in an undo transaction."""
+    end_left_over()
+    edit_in_step(obj)
+
+
+def edit_in_step(obj: DocumentObject) -> None:
+    """Opens the panel of an object in the undo transaction that is open, by which it was made, or in one of its own."""
     if Gui.Control.activeDialog():
         FreeCAD.Console.PrintWarning(
             translate("BeltGrinding", "Close the open task panel first.") + "\n"

@@ -15,7 +15,7 @@ from ...objects.belt_machine import half_size
 from ...objects.job_data import face_name
 from ...objects.kinds import DocumentObject, Field
 from ...objects.fields import forget_field
-from ..common.editing import edit
+from ..common.editing import edit_in_step
 from ..common.compat import QtCore, QtGui, translate
 from ..common.event_texts import errors
 from ..common.kinds import Array, Json, QtEvent, Widget
@@ -238,7 +238,7 @@ class VerdictDock(ObjectDock):
             path.Along = "u"  # a small place needs no comparison
             raster_path.set_region(path, points)
         if not step.failed:
-            edit(path)
+            edit_in_step(path)
 
     def _read_field(self) -> Field | None:
         if self.field is None:

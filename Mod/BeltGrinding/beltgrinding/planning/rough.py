@@ -147,12 +147,13 @@ def lay(
     settings: Json,
     context: core.RunContext,
     zones: Zones | None = None,
+    looked_at: bool = True,
 ) -> dict[str, Any]:
     """As ``raster_path.raster``; with the zones that the program's file will have, and one force where the plan's settings let
     none change."""
     if one_force(settings):  # the feed alone would fall at borders
         wanted = {**wanted, "border_force_share": 0.0}
-    laid = raster_path.raster(data, wanted, context)
+    laid = raster_path.raster(data, wanted, context, looked_at)
     if one_force(settings):
         laid["forces"] = np.full(
             len(laid["forces"]), -1.0
@@ -186,7 +187,7 @@ def attempted(
     context = context or core.RunContext()
     change, machine, wanted = move
     data = with_machine(data, machine, wanted, settings)
-    laid = lay(data, wanted, settings, context.part(0.0, 0.2), zones)
+    laid = lay(data, wanted, settings, context.part(0.0, 0.2), zones, looked_at=False)
     # The way is found once: other passes go the same.
     wanted = {**wanted, "along": laid["along"], "direction": list(laid["direction"])}
     job = rounds.settled(with_path(data, laid), context)

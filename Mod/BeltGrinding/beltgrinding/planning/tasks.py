@@ -75,7 +75,7 @@ def soon(data: Json, until: End, *arguments: Any) -> Tried | None:
 def full(data: Json, until: End, tried: Tried, settings: Json, zones: Zones | None) -> Tried:
     """Passes that were tried with the feeds and forces of a full plan in the coarse resolution. No round begins after ``until``."""
     data = rough.with_machine(data, tried.machine, tried.wanted, settings)
-    laid = rough.lay(data, tried.wanted, settings, core.RunContext(), zones)
+    laid = rough.lay(data, tried.wanted, settings, core.RunContext(), zones, looked_at=False)
     settings = {**settings, "goal": "tolerance", "levels": 0, "check": False}
     job = resolution.applied(
         resolution.with_mode(rough.evenly(rough.with_path(data, laid)), resolution.COARSE), []

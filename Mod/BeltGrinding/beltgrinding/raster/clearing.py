@@ -32,6 +32,7 @@ CUT = 25.0  # the same, for a pass that ends, or begins, besides its border
 LIFTS = 8  # heights that are looked at, from a pass to its clearance
 MOST_ON_WAY = 200  # places that are looked at on a rapid way
 MARGIN = 0.5  # of fit_mm, that a leaned wheel keeps
+OF_POINTS = ("points", "normals", "tangents")  # of a piece
 
 
 class Clearing:
@@ -154,8 +155,7 @@ class Clearing:
         """
         if self.blind or self.settings["where_it_collides"] == "warn":
             return levels
-        fine = [[finer(piece, self.tool.check) for piece in pieces] for pieces in levels]
-        flat = [one for pieces in fine for one in pieces]
+        flat = finer([piece for pieces in levels for piece in pieces], self.tool.check)
         depths = self._by_piece(flat, 0)
         wrong = [k for k, depth in enumerate(depths) if (depth > self.fit).any()]
         tried = {k: [depths[k]] for k in wrong}
@@ -224,9 +224,8 @@ class Clearing:
         """mm (n,) of each piece."""
         if not pieces:
             return []
-        frames = [self.frames(piece) for piece in pieces]
-        found = self.depth(self._leaned(np.concatenate(frames), lean))
-        return np.split(found, np.cumsum([len(f) for f in frames])[:-1])
+        found = self.depth(self._leaned(self.frames(as_one(pieces)), lean))
+        return np.split(found, begins(pieces)[1:])
 
     def frames(self, piece: Piece) -> Floats:
         """work_from_contact (n, 4, 4) at the points of a piece."""
@@ -271,7 +270,7 @@ class Clearing:
             and kept_runs[-1][-1] == len(states) - 1
         ):
             last = result.pop()  # the beginning of a ring is no end
-            for name in ("points", "normals", "tangents"):
+            for name in OF_POINTS:
                 result[0][name] = np.vstack([last[name][:-1], result[0][name]])
             result[0]["cut"] = (True, True)
         return result
@@ -314,25 +313,43 @@ def _on_mesh(mesh: core.TriangleMesh, spacing: float, most: int) -> Floats:
     return np.vstack(found)
 
 
-def finer(piece: Piece, spacing: float) -> Piece:
-    """The piece with points no farther apart than ``spacing`` mm; ``own`` (n,) bool: those that it had."""
-    p = piece["points"]
-    count = np.maximum(np.ceil(np.linalg.norm(np.diff(p, axis=0), axis=1) / spacing), 1).astype(int)
+def as_one(pieces: Sequence[Piece]) -> Piece:
+    """Points, normals and tangents (n, 3) of all pieces: at a time, for they may be thousands of few points each."""
+    return {name: np.concatenate([one[name] for one in pieces]) for name in OF_POINTS}
+
+
+def begins(pieces: Sequence[Piece]) -> Array:
+    """(pieces,) the number of each one's first point among those of all."""
+    return np.cumsum([0, *(len(one["points"]) for one in pieces)])[:-1]
+
+
+def finer(pieces: Sequence[Piece], spacing: float) -> list[Piece]:
+    """The pieces with points no farther apart than ``spacing`` mm; ``own`` (n,) bool: those that they had."""
+    if not pieces:
+        return []
+    whole, last = as_one(pieces), begins(pieces)[1:] - 1
+    ways = np.linalg.norm(np.diff(whole["points"], axis=0), axis=1)
+    count = np.append(np.maximum(np.ceil(ways / spacing), 1).astype(int), 1)
+    count[last] = 1  # from piece to piece there is nothing
     i = np.repeat(np.arange(len(count)), count)
-    share = (np.arange(len(i)) - np.repeat(np.cumsum(count) - count, count)) / count[i]
-    found = {"closed": piece["closed"], "own": np.append(share == 0.0, True)}
-    for name in ("points", "normals", "tangents"):
-        a = piece[name]
-        between = a[i] + share[:, None] * (a[i + 1] - a[i])
-        found[name] = np.vstack([between, a[-1:]])
+    first = np.cumsum(count) - count
+    share = (np.arange(len(i)) - np.repeat(first, count)) / count[i]
+    found: dict[str, Any] = {"own": share == 0.0}
+    for name in OF_POINTS:
+        a = whole[name]
+        found[name] = a[i] + share[:, None] * (np.append(a[1:], a[-1:], axis=0)[i] - a[i])
         if name != "points":
             found[name] /= np.linalg.norm(found[name], axis=1)[:, None]
-    return found
+    parts = {name: np.split(all_, first[begins(pieces)[1:]]) for name, all_ in found.items()}
+    return [
+        {"closed": one["closed"], **{name: part[k] for name, part in parts.items()}}
+        for k, one in enumerate(pieces)
+    ]
 
 
 def part_of(piece: Piece, places: Array) -> Piece:
     """The piece's points of these numbers."""
-    return {**piece, **{name: piece[name][places] for name in ("points", "normals", "tangents")}}
+    return {**piece, **{name: piece[name][places] for name in OF_POINTS}}
 
 
 def runs(wanted: Array) -> list[Array]:

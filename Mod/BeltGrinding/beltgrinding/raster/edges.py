@@ -60,7 +60,7 @@ class Kept:
         return [pieces for pieces in found if pieces]
 
     def _parts(self, piece: Piece) -> list[Piece]:
-        fine = finer(piece, self._fine)
+        (fine,) = finer([piece], self._fine)
         free = ~self._near(self._clearing.frames(fine))
         if free.all():
             return [piece]

@@ -26,7 +26,7 @@ def groups(settings: Json) -> list[dict[str, Any]]:
 
 
 def join(parts: Sequence[Json]) -> dict[str, Any]:
-    """One path of what ``raster_path.raster`` lays, with ``places`` if the first has them; all else is as in the first."""
+    """One path of what ``raster_path.raster`` lays, with ``places`` if all have them; all else is as in the first."""
     if len(parts) == 1:
         return dict(parts[0])
     result = dict(parts[0])
@@ -41,7 +41,8 @@ def join(parts: Sequence[Json]) -> dict[str, Any]:
         for begin, part in zip(begins, parts)
         for one in part["passes"]
     ]
-    result["places"] = _places([one["places"] for one in parts])
+    if all("places" in one for one in parts):
+        result["places"] = _places([one["places"] for one in parts])
     return result
 
 
@@ -52,7 +53,7 @@ def repeat(result: dict[str, Any], count: int, clearing: Clearing) -> list[Fact]
         return []
     _refuse(count * len(result["frames"]), "raster.repeats")
     told = []
-    if clearing.ways_blocked(result["contacts"][[-1, 0]], np.array([True, True])):
+    if "fit" in result and clearing.ways_blocked(result["contacts"][[-1, 0]], np.array([True, True])):
         told.append(
             Fact(
                 "raster.way_back_blocked",
@@ -64,7 +65,8 @@ def repeat(result: dict[str, Any], count: int, clearing: Clearing) -> list[Fact]
     again = join([result] * count)
     for name in (*OF_POSES, "passes"):
         result[name] = again[name]
-    result["fit"] = np.tile(result["fit"], count)
+    if "fit" in result:
+        result["fit"] = np.tile(result["fit"], count)
     return told
 
 

@@ -75,8 +75,11 @@ def load_job(path: Path | str) -> dict[str, Any]:
         raise in_file(error, path) from None
 
 
-def raster(job: Job | Json, settings: Json, context: Context = None) -> dict[str, Any]:
-    """Lays passes on faces of a validated job's design.
+def raster(
+    job: Job | Json, settings: Json, context: Context = None, looked_at: bool = True
+) -> dict[str, Any]:
+    """Lays passes on faces of a validated job's design. ``looked_at``: what they do is, for warnings: else fit, places, reachable and
+    check are left away.
 
     Returns dict(frames (n, 4, 4) base_from_tcp mm, feeds (n,) mm/s, forces (n,) N, -1: the job's,
     rapid (n,) bool, lines (n,) 0, as ``core.ToolPath`` takes them, the raster's own passes and then its further groups; contacts (n, 4, 4)
@@ -106,7 +109,8 @@ def raster(job: Job | Json, settings: Json, context: Context = None) -> dict[str
                 "{tool} fits nowhere there; give another direction or belt angle",
                 tool=clearing.tool.name,
             )
-        one["places"] = _places(read, shape, faces, settings, one, levels, clearing, context)
+        if looked_at and "places" not in one:
+            one["places"] = _places(read, shape, faces, settings, one, levels, clearing, context)
         return one, clearing
 
     tried: list[dict[str, Any]] = []
@@ -126,12 +130,13 @@ def raster(job: Job | Json, settings: Json, context: Context = None) -> dict[str
                 ) from None
             raise
     result, clearing = joined.join([one for one, _ in found]), found[0][1]
-    telling.ends(result, settings, warnings)
-    telling.ways(clearing, result, warnings)
-    result["fit"] = telling.fit(clearing, settings, result, warnings)
-    result["reachable"] = reachable.told(result["places"], clearing.tool, settings, warnings)
-    result["check"] = path_check.check(read, settings, result, context)
-    warnings += result["check"]["problems"]
+    if looked_at:
+        telling.ends(result, settings, warnings)
+        telling.ways(clearing, result, warnings)
+        result["fit"] = telling.fit(clearing, settings, result, warnings)
+        result["reachable"] = reachable.told(result["places"], clearing.tool, settings, warnings)
+        result["check"] = path_check.check(read, settings, result, context)
+        warnings += result["check"]["problems"]
     warnings += joined.repeat(result, settings["repeats"], clearing)
     result.update(along=settings["along"], direction=settings["direction"], tried=tried)
     result["warnings"] = list({str(one): one for one in warnings}.values())  # of a group each
@@ -248,6 +253,8 @@ def _laid(
         added = filling.more(levels_of, places, clearing, settings, step_over, extents)
         if added:
             result.update(passes.assemble([*cleared, *added], settings, cell, entry, clearing))
+        else:
+            result["places"] = places
     return result, levels, clearing
 
 

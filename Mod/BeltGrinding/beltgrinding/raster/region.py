@@ -16,7 +16,7 @@ from ..job.settings import Job
 from ..job.typed import typed
 from ..simulation.result import Result
 from . import reachable
-from .clearing import finer, part_of, runs
+from .clearing import as_one, begins, finer, part_of, runs
 from .kinds import Levels, Piece
 
 MOST_POINTS = 5_000  # of a region that is made of samples
@@ -108,11 +108,14 @@ def restricted(levels: Levels, points: Floats, margin: float) -> Levels:
     """The pieces of passes by level, as ``clearing.cleared`` takes them, cut to where they are no farther than
     ``margin`` mm from one of ``points`` (n, 3). Shorter gaps than that are kept."""
     result, step = [], max(FINE * margin, FINEST)
+    flat = finer([piece for pieces in levels for piece in pieces], step)
+    if not flat:
+        return levels
+    all_near = reachable.nearest_distance(as_one(flat)["points"], points) <= margin
+    parts = iter(zip(flat, np.split(all_near, begins(flat)[1:])))
     for pieces in levels:
         kept = []
-        for piece in pieces:
-            fine = finer(piece, step)
-            near = reachable.nearest_distance(fine["points"], points) <= margin
+        for piece, (fine, near) in zip(pieces, parts):
             for gap in runs(~near):
                 inner = gap[0] > 0 and gap[-1] < len(near) - 1
                 if inner and len(gap) * step < margin:

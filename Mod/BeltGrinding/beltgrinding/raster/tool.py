@@ -92,11 +92,14 @@ class Wheel:
     def under(self, points: Floats, frames: Floats, length: float, gap: float) -> Array:
         """(k,) bool of points (k, 3) that lie no farther than ``gap`` from it at one of its frames."""
         z, y = frames[:, :3, 2], frames[:, :3, 1]
-        way = points[:, None] - (frames[:, :3, 3] - self.radius * z)[None]
-        beside = np.einsum("nkx,kx->nk", way, y)
-        radial = np.sqrt(np.maximum((way**2).sum(axis=2) - beside**2, 0.0))
-        off = radial - self.radius + np.interp(beside, *self._drop)
-        down = np.einsum("nkx,kx->nk", way, z) > 0.0
+        middle = frames[:, :3, 3].mean(axis=0)  # from near by no digits are lost
+        points, axle = points - middle, frames[:, :3, 3] - self.radius * z - middle
+        beside = points @ y.T - (axle * y).sum(axis=1)
+        down = points @ z.T > (axle * z).sum(axis=1)
+        squares = (points**2).sum(axis=1)[:, None] - 2.0 * points @ axle.T + (axle**2).sum(axis=1)
+        off = np.sqrt(np.maximum(squares - beside**2, 0.0)) - self.radius
+        if self._drop[1].any():
+            off += np.interp(beside, *self._drop)
         return ((abs(beside) <= 0.5 * self.width) & (abs(off) <= gap) & down).any(axis=1)
 
 

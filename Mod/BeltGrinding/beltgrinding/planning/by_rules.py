@@ -12,7 +12,8 @@ from ..base.kinds import Json, known
 from ..base.records import made
 from ..engine import InputError, core
 from ..job.settings import BeltMachine
-from .rough import GAIN, MATTERS, Move, Moves, Tried, Zones, attempt, less_force
+from .queue import Queue
+from .rough import GAIN, MATTERS, Move, Tried, Zones, attempt, less_force
 
 TRIES = 7  # passes, at most
 CLOSER = 0.7  # step-over against the one before
@@ -31,57 +32,37 @@ def climb(
     first: Move,
     settings: Json,
     zones: Zones | None = None,
-    moves: tuple[Moves, ...] = (),
     told: Callable[[dict[str, Any]], object] | None = None,
     context: core.RunContext | None = None,
-    before: Tried | None = None,
-    over: Callable[[], bool] | None = None,
-    patience: int = 0,
-    seen: set[str] | None = None,
 ) -> tuple[Tried, list[dict[str, Any]]]:
     """Climb from passes to better ones. Returns (the best; a row of figures for each that was tried).
 
-    At most ``TRIES`` are tried; with ``patience``, as long as one of so many is better.
-
-    Begins with ``first``, or with ``before``, which was tried, and goes on from the best with what may mend it, the
-    likeliest first. What was ``seen`` is not tried, and what is tried is added to it. ``moves``: what may be tried
-    besides ``others``; ``over()``: whether the best so far is enough. Raises InputError where ``first`` cannot be laid, Cancelled.
+    At most ``TRIES`` are tried: ``first``, and from the best on what may mend it, the likeliest first. Raises InputError where
+    ``first`` cannot be laid, Cancelled.
     """
     context = context or core.RunContext()
-    best, rows = before, list[dict[str, Any]]()
-    most = patience or TRIES
-    seen, left = set[str]() if seen is None else seen, most
-    queue: list[Move] = [first] if before is None else _following(before, moves)
-    while queue and left > 0:
-        if best is not None and over is not None and over():
-            break
-        move = queue.pop(0)
-        key = repr((sorted(move[1].items(), key=str), sorted(move[2].items(), key=str)))
-        if key in seen:
-            continue
-        seen.add(key)
-        part = context.part(1.0 - left / most, 1.0 - (left - 1) / most)
+    best: Tried | None = None
+    rows: list[dict[str, Any]] = []
+    seen = set[str]()
+    queue, moves = Queue([others], seen), [first]
+    while moves and len(rows) < TRIES:
+        part = context.part(len(rows) / TRIES, (len(rows) + 1) / TRIES)
         try:
-            one = attempt(data, move, settings, zones, part)
+            one = attempt(data, moves[0], settings, zones, part)
         except InputError:
             if best is None:
                 raise
-            continue  # no such passes on these faces
+            moves = queue.take(1)  # no such passes on these faces
+            continue
         better = best is None or one.in_tolerance > best.in_tolerance + GAIN
         rows.append(one.row(better))
         if told is not None:
             told(rows[-1])
-        left -= 1
         if better:
-            left = patience or left
-            best = one
-            queue = _following(one, moves)
+            best, queue = one, Queue([others], seen)
+            queue.add(one)
+        moves = queue.take(1)
     return known(best), rows
-
-
-def _following(one: Tried, moves: tuple[Moves, ...]) -> list[Move]:
-    found = [pair for source in (others, *moves) for pair in source(one)]
-    return [move for _, move in sorted(found, key=lambda pair: -pair[0])]
 
 
 def others(one: Tried) -> list[tuple[float, Move]]:

@@ -22,15 +22,16 @@ from ..engine import InputError, core
 from ..job.typed import typed
 from ..job.workpiece import read_design
 from ..raster import reach_map
-from . import rough, tasks
+from . import by_rules, rough, tasks
 from .candidates import Seen, candidates, further_groups, of_further
 from .moves import Moves
+from .queue import Queue
 from .rough import Move, Tried, Zones
 
 BUDGET_S = 120.0
 UNTIL_IT_PAYS = float("inf")  # s: as long as a generation of rough plans brings GAIN
 OWN_ANGLES, OTHER_ANGLES = (0.0, 90.0, 45.0, 135.0), (0.0, 90.0)  # degrees, of the belt
-LEADERS = 4  # of a glance, that are planned in a generation; of rough plans, that rules go on from
+LEADERS = 4  # of a glance, that are planned in a generation
 FINALS = 3  # full plans
 FAR_BEHIND = 0.1  # of the area: passes so far behind get no full plan
 GAIN = 0.005  # of the area
@@ -38,7 +39,8 @@ ENOUGH = 0.995  # of the area: nothing else is tried
 # Of the budget.
 GLANCES_UNTIL, COARSE_UNTIL, RULES_UNTIL, GROUPS_UNTIL, FULL_UNTIL = 0.2, 0.35, 0.55, 0.7, 0.9
 TO_END = 0.1  # of the budget, in which what is being tried then may end
-PATIENCE = 20  # passes that rules try from one without finding better ones
+WIDE = 4  # passes that rules try at a time, whatever the number of processes
+PATIENCE = 20  # passes that rules try without finding better ones
 LAST = 2.0  # times what full plans took: what they and the last rounds take once more
 GROUPS, OF_A_GROUP = 3, 4  # further groups of passes; ways and belt angles that are tried for each
 FURTHER = 4  # wheels of which is planned what they would bring
@@ -142,7 +144,7 @@ class _Run:
         default, coarse = self._coarse(start, candidates(own, others, start, self.search.fixed))
         mine = [one for one in coarse if one.machine["wheel"] == own.machine["wheel"]]
         wheels = self._brought(further, own, mine)
-        default, tried = self._ruled(default, coarse, RULES_UNTIL + TO_END)
+        tried = self._ruled(default, coarse, RULES_UNTIL + TO_END)
         tried = self._grouped(tried)
         begun = self._spent()
         best = self._finals(default, tried)
@@ -150,7 +152,7 @@ class _Run:
         until = 1.0 - LAST * (self._spent() - begun)
         while self.search.budget_s < UNTIL_IT_PAYS and not self._over(until - TO_END):
             before, self.lap = _most(tried), self.lap + 1
-            default, tried = self._ruled(default, tried, until)
+            tried = self._ruled(default, tried, until)
             if not _most(tried) > before:
                 break
             again = self._finals(default, tried)
@@ -317,25 +319,32 @@ class _Run:
                 shares[key] = max(shares.get(key, 0.0), value.in_tolerance)
         return [_brings(one, shares.get(id(one)), mine) for one in further]
 
-    def _ruled(
-        self, default: Tried | None, coarse: list[Tried], until: float
-    ) -> tuple[Tried | None, list[Tried]]:
-        """What the rules find from the start until that share of the budget, and from it and the best with what they began with, the
-        best first."""
-        first = [] if default is None else [default]
-        others = _different([one for one in coarse if not any(_same(one, own) for own in first)])
-        leaders = [*first, *others[: LEADERS - len(first)]]
-        moves, end = (Moves(self.search.fixed, self.lap),), self._until(until)
-        calls = []
-        for one in leaders:
-            begun: Move = (one.change, one.machine, one.wanted)
-            options = (begun, self.settings, self.zones, moves, one, self.seen, PATIENCE)
-            calls.append(self._call(tasks.ruled, end, *options))
-        values = self._run(calls, until, self._part(0.5, 0.7))
-        climbed = [one if value is None else value[0] for one, value in zip(leaders, values)]
-        self.seen |= set().union(*(value[2] for value in values if value is not None))
-        rest = others[len(leaders) - len(first) :]
-        return climbed[0] if first else None, _best_first([*climbed, *rest])
+    def _ruled(self, default: Tried | None, coarse: list[Tried], until: float) -> list[Tried]:
+        """Those that were tried, and what the rules find from them until that share of the budget, the best first: ``WIDE`` at a
+        time, the most promising, and so on from each of them, as long as one of ``PATIENCE`` is better.
+        """
+        found = _best_first(_different([*([] if default is None else [default]), *coarse]))
+        queue, end = Queue(
+            [by_rules.others, Moves(self.search.fixed, self.lap)], self.seen
+        ), self._until(until)
+        for one in found:
+            queue.add(one)
+        best, waited, longest = _most(found), 0, 0.0
+        while waited < PATIENCE and not self._over(until - longest):
+            moves, begun = queue.take(WIDE), self._spent()
+            if not moves:
+                break
+            calls = [self._call(tasks.once, end, one, self.settings, self.zones) for one in moves]
+            share = min(begun / until, 1.0)
+            values = self._run(calls, until + TO_END, self._part(0.5 + 0.2 * share, 0.7))
+            longest = max(longest, self._spent() - begun)
+            for one in values:
+                if one is not None:
+                    queue.add(one)
+                    found.append(one)
+            waited = 0 if _most(found) > best + rough.GAIN else waited + len(moves)
+            best = max(best, _most(found))
+        return _best_first(found)
 
     def _grouped(self, tried: list[Tried]) -> list[Tried]:
         """Those that were tried, and before them the best with further groups of passes, their ways and belt angles by what the wheel
@@ -408,12 +417,12 @@ def _done(answer: Answer | None) -> bool:
 
 
 def _different(tried: Sequence[Tried]) -> list[Tried]:
-    """Each once, in their order."""
-    found: list[Tried] = []
+    """Each once, in their order, and of those that come to the same by other settings, as more smoothing where there is nothing to
+    smooth, the first."""
+    found: dict[tuple[float, int, float], Tried] = {}
     for one in tried:
-        if not any(_same(one, other) for other in found):
-            found.append(one)
-    return found
+        found.setdefault((one.in_tolerance, one.poses, one.process_time_s), one)
+    return list(found.values())
 
 
 def _same(one: Tried, other: Tried) -> bool:

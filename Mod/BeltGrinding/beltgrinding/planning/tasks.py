@@ -2,57 +2,21 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from typing import Any
 
 from ..base.crew import End
 from ..base.kinds import Json
 from ..engine import core
 from ..job import resolution
-from . import by_rules, rough, rounds
-from .rough import ROUGHLY, Move, Moves, Roughly, Tried, Zones
+from . import rough, rounds
+from .rough import ROUGHLY, Move, Roughly, Tried, Zones
 
 
 def alone(function: Callable[..., Any], *arguments: Any) -> Any:
     """The function's answer, by one thread; called in a process of its own."""
     core.set_threads(1)
     return function(*arguments)
-
-
-def ruled(
-    data: Json,
-    until: End,
-    first: Move,
-    settings: Json,
-    zones: Zones | None,
-    moves: tuple[Moves, ...] = (),
-    before: Tried | None = None,
-    seen: Collection[str] = (),
-    patience: int = 0,
-) -> tuple[Tried, list[dict[str, Any]], set[str]]:
-    """As ``by_rules.climb``, but for what was ``seen``; and what it has seen besides. Nothing new is tried that would not end until
-    ``until``, as long as others took."""
-    began, longest, known = time.monotonic(), 0.0, set(seen)
-
-    def told(_: dict[str, Any]) -> None:
-        nonlocal began, longest
-        now = time.monotonic()
-        began, longest = now, max(longest, now - began)
-
-    best, rows = by_rules.climb(
-        data,
-        first,
-        settings,
-        zones,
-        moves,
-        told,
-        before=before,
-        over=lambda: until.passed(longest),
-        patience=patience,
-        seen=known,
-    )
-    return best, rows, known
 
 
 def begun(
@@ -70,6 +34,11 @@ def begun(
 def soon(data: Json, until: End, *arguments: Any) -> Tried | None:
     """As ``begun``; None where ``until`` has passed before it begins."""
     return None if until.passed() else begun(data, until, *arguments)
+
+
+def once(data: Json, until: End, *arguments: Any) -> Tried | None:
+    """As ``rough.attempt``; None where ``until`` has passed before it begins."""
+    return None if until.passed() else rough.attempt(data, *arguments)
 
 
 def full(data: Json, until: End, tried: Tried, settings: Json, zones: Zones | None) -> Tried:

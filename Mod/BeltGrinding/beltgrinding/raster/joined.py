@@ -53,7 +53,9 @@ def repeat(result: dict[str, Any], count: int, clearing: Clearing) -> list[Fact]
         return []
     _refuse(count * len(result["frames"]), "raster.repeats")
     told = []
-    if "fit" in result and clearing.ways_blocked(result["contacts"][[-1, 0]], np.array([True, True])):
+    if "fit" in result and clearing.ways_blocked(
+        result["contacts"][[-1, 0]], np.array([True, True])
+    ):
         told.append(
             Fact(
                 "raster.way_back_blocked",

@@ -96,7 +96,9 @@ class Wheel:
         points, axle = points - middle, frames[:, :3, 3] - self.radius * z - middle
         beside = points @ y.T - (axle * y).sum(axis=1)
         down = points @ z.T > (axle * z).sum(axis=1)
-        squares = (points**2).sum(axis=1)[:, None] - 2.0 * points @ axle.T + (axle**2).sum(axis=1)
+        squares = (
+            (points**2).sum(axis=1)[:, None] - 2.0 * points @ axle.T + (axle**2).sum(axis=1)
+        )
         off = np.sqrt(np.maximum(squares - beside**2, 0.0)) - self.radius
         if self._drop[1].any():
             off += np.interp(beside, *self._drop)

@@ -1,6 +1,6 @@
 """The search for wheel, direction of the passes and belt angle: first by what the geometry says, then by a glance at what seems to
-reach enough, then by rough plans of the best, then by rules from the best of those, then with further groups of passes where the
-best leave too much, then by full plans of the best three.
+reach enough, then by rough plans of the best, then by rules from all of those, the most promising first, then with further groups of
+passes where the best leave too much, then by full plans of the best three.
 
 Candidates run side by side, on processes of one thread each. What is found depends on how many were tried, never on how many
 processes did it, nor on which was ready first.
@@ -321,12 +321,10 @@ class _Run:
 
     def _ruled(self, default: Tried | None, coarse: list[Tried], until: float) -> list[Tried]:
         """Those that were tried, and what the rules find from them until that share of the budget, the best first: ``WIDE`` at a
-        time, the most promising, and so on from each of them, as long as one of ``PATIENCE`` is better.
-        """
+        time, the most promising, and so on from each of them, as long as one of ``PATIENCE`` is better."""
         found = _best_first(_different([*([] if default is None else [default]), *coarse]))
-        queue, end = Queue(
-            [by_rules.others, Moves(self.search.fixed, self.lap)], self.seen
-        ), self._until(until)
+        queue = Queue([by_rules.others, Moves(self.search.fixed, self.lap)], self.seen)
+        end = self._until(until)
         for one in found:
             queue.add(one)
         best, waited, longest = _most(found), 0, 0.0

@@ -7,9 +7,10 @@ import pytest
 import FreeCAD
 import Part
 
-from beltgrinding.engine import core
+from beltgrinding.engine import InputError, core
 from beltgrinding.job import load, workpiece
-from beltgrinding.raster import raster_path, reachable
+from beltgrinding.job.typed import typed
+from beltgrinding.raster import filling, raster_path, reachable
 
 RADIUS, WIDTH = 20.0, 10.0
 X = {"along": "direction", "direction": [1, 0, 0], "step_over_mm": 3.0, "spacing": "lines"}
@@ -214,3 +215,34 @@ def make_slot(tmp_path):
     Part.makeBox(60, 60, 40, V(0, 0, -40)).cut(Part.makeBox(60, 4, 20, V(0, 28, -20))).exportBrep(
         str(tmp_path / "slot.brep")
     )
+
+
+def test_passes_too_near_each_other_to_fill_with_are_left_away(wall):
+    """On a face of more than 100 step-overs, the densest that fill its gaps are more than may be asked for."""
+    shape = workpiece.read_design(wall["design"])
+    clearing = raster_path.Clearing(typed(wall), shape, raster_path.validate({}), [], None)
+    seen = {
+        "points": np.array([[10.0, 10.0, 0.0]]),
+        "counted": np.ones(1),
+        "fits": np.array([True]),
+        "state": np.array([reachable.NO_PASS]),
+    }
+    square = (
+        np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]]),
+        np.tile([0.0, 0.0, 1.0], (4, 1)),
+        np.array([[0, 1, 2], [0, 2, 3]]),
+        np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 1.0]]),  # at the triangles' corners
+    )
+    asked = []
+
+    def levels_of(step_over):
+        asked.append(step_over)
+        if step_over < 0.1:
+            core.raster_lines(*square, step_over=1e-7)
+        return []
+
+    assert (
+        filling.more(levels_of, seen, clearing, raster_path.validate({}), 2.0, (5.0, 5.0, None))
+        == []
+    )
+    assert asked == [2.0 / 5, 2.0 / 25]

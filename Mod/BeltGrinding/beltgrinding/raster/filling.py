@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base.kinds import Array, Floats, Json
+from ..engine import InputError
 from . import passes, reachable, region
 from .kinds import Extents, Levels, Piece
 
@@ -23,6 +24,7 @@ DENSER = (
 LEAST = 0.02  # of what the wheel gets to: less is left as it is, for a pass grinds what lies beside it once more
 GAIN = 0.005  # of what is to be filled, that a pass must touch
 MOST = 30  # passes that are added
+TOO_MANY = "raster.too_many_passes"  # code of the error where they lie nearer to each other than may be asked for
 
 
 def more(
@@ -45,7 +47,13 @@ def more(
         if seen["counted"][left].sum() <= enough or len(found) >= MOST:
             break
         points, areas = seen["points"][left], seen["counted"][left]
-        near = region.restricted(levels_of(step_over / denser), points, 0.5 * step_over)
+        try:
+            levels = levels_of(step_over / denser)
+        except InputError as error:
+            if error.code != TOO_MANY:
+                raise
+            break  # what is left stays, and is told
+        near = region.restricted(levels, points, 0.5 * step_over)
         pieces = [
             piece
             for level in clearing.cleared([level for level in near if level])

@@ -15,6 +15,7 @@ from beltgrinding.cli import background, searching
 from beltgrinding.engine import core
 from beltgrinding.job import load as jobs
 from beltgrinding.planning import by_rules, candidates, grinding, moves, rough, search, wheels
+from beltgrinding.planning.queue import Queue
 from beltgrinding.planning.candidates import Seen
 from beltgrinding.planning.search import Search
 from beltgrinding.raster import raster_path, reach_map
@@ -212,6 +213,34 @@ def test_moves_answer_to_what_stays_out():
     leaned = tried(shares={"shared": 0.2}, belt_angle_deg=90.0)
     told = {move[0]: move[2] for _, move in moves.Moves()(leaned)}
     assert told["lean"]["max_tilt_deg"] == 5.0 and told["belt_angle"]["belt_angle_deg"] == 67.5
+
+
+def test_no_turn_is_hoped_to_get_where_no_belt_angle_does():
+    def hope(reachable):
+        found = moves.Moves((), 0, reachable)(tried(shares={"no_room": 0.3}))
+        return max((share for share, move in found if move[0] == "belt_angle"), default=0.0)
+
+    assert hope(1.0) > hope(0.9) > hope(0.7) == 0.0
+
+
+def test_the_most_promising_of_all_is_tried_next_and_none_twice():
+    far, near = tried(), tried()._replace(in_tolerance=0.8)
+
+    def source(one):
+        names = ("much", "little") if one is near else ("far", "very")
+        shares = (0.5, 0.1) if one is near else (0.6, 1.1)
+        return [
+            (share, (name, one.machine, {"name": name, "of": one.in_tolerance}))
+            for name, share in zip(names, shares)
+        ]
+
+    seen = set()
+    waiting = Queue([source], seen)
+    waiting.add(far)
+    waiting.add(near)
+    assert [name for name, *_ in waiting.take(3)] == ["much", "little", "very"]
+    waiting.add(near)
+    assert [name for name, *_ in waiting.take(3)] == ["far"] and len(seen) == 4
 
 
 def test_what_is_a_little_different_is_tried_last_the_same_each_time():

@@ -24,14 +24,16 @@ CHANGED = 0.5  # of the settings, in each neighbour
 
 class Moves:
     """Calls give [(of the area, that it may mend, Move)] of a ``Tried``. ``fixed``: settings of the raster that stay; ``lap``:
-    others by chance."""
+    others by chance; ``reachable``: of the area, by what the geometry says: what no belt angle gets to, none mends.
+    """
 
-    def __init__(self, fixed: Collection[str] = (), lap: int = 0) -> None:
-        self.fixed, self.lap = frozenset(fixed), lap
+    def __init__(self, fixed: Collection[str] = (), lap: int = 0, reachable: float = 1.0) -> None:
+        self.fixed, self.lap, self.reachable = frozenset(fixed), lap, reachable
 
     def __call__(self, one: Tried) -> list[tuple[float, Move]]:
         shares = one.shares
-        unreached = shares["no_room"] + shares["no_motion"] + shares["fringe"]
+        more = max(shares["no_room"] - (1.0 - self.reachable), 0.0)
+        unreached = more + shares["no_motion"] + shares["fringe"]
         left = unreached + GUESS * (shares["shared"] + shares["border"])
         found: list[tuple[float, Move]] = []
         if left > MATTERS:

@@ -117,6 +117,7 @@ def _bytes(data: Json, first: Json) -> float:
 class _Run:
     crew: Crew
     going: Path  # a file that is there until who asked wants no more
+    reachable: float  # of the area, by any of the wheels that may be taken
 
     def __init__(
         self,
@@ -140,6 +141,7 @@ class _Run:
 
     def found(self) -> Found:
         own, others, further = self._looked()
+        self.reachable = max(one.most for one in (own, *others))
         start: Move = ("first", self.data["belt_machine"], self.first)
         default, coarse = self._coarse(start, candidates(own, others, start, self.search.fixed))
         mine = [one for one in coarse if one.machine["wheel"] == own.machine["wheel"]]
@@ -321,9 +323,12 @@ class _Run:
 
     def _ruled(self, default: Tried | None, coarse: list[Tried], until: float) -> list[Tried]:
         """Those that were tried, and what the rules find from them until that share of the budget, the best first: ``WIDE`` at a
-        time, the most promising, and so on from each of them, as long as one of ``PATIENCE`` is better."""
+        time, the most promising, and so on from each of them, as long as one of ``PATIENCE`` is better.
+        """
         found = _best_first(_different([*([] if default is None else [default]), *coarse]))
-        queue = Queue([by_rules.others, Moves(self.search.fixed, self.lap)], self.seen)
+        queue = Queue(
+            [by_rules.others, Moves(self.search.fixed, self.lap, self.reachable)], self.seen
+        )
         end = self._until(until)
         for one in found:
             queue.add(one)

@@ -228,7 +228,7 @@ def test_the_most_promising_of_all_is_tried_next_and_none_twice():
 
     def source(one):
         names = ("much", "little") if one is near else ("far", "very")
-        shares = (0.5, 0.1) if one is near else (0.6, 1.1)
+        shares = (0.5, 0.1) if one is near else (0.6, 1.0)
         return [
             (share, (name, one.machine, {"name": name, "of": one.in_tolerance}))
             for name, share in zip(names, shares)

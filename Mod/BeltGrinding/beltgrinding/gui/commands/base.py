@@ -15,10 +15,11 @@ from ...objects.kinds import Document, DocumentObject
 from ...objects.proxy import type_of
 from ..common.chosen import activate, active_job, jobs_of
 from ..common.compat import translate
+from ..common.editing import end_left_over
 from ..common.icons import icon
 from ..common.greyed import say_reason
 from ..common.messages import report
-from ..common.transaction import end_left_over, transaction
+from ..common.transaction import transaction
 
 if TYPE_CHECKING:
     from ...objects.proxy import Proxy

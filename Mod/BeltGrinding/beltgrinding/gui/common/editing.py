@@ -7,7 +7,14 @@ import FreeCADGui as Gui
 
 from ...objects.kinds import DocumentObject
 from .compat import translate
-from .transaction import end_left_over
+
+
+def end_left_over() -> None:
+    """Ends an undo step that is open while no panel is that could own it, as one that had changed nothing of a document
+    that was closed: it would take in all that is done next, in any document, and a panel's Cancel would take that back.
+    """
+    if not Gui.Control.activeDialog():
+        FreeCAD.closeActiveTransaction(False)
 
 
 def edit(obj: DocumentObject) -> None:

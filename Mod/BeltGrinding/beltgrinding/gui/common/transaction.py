@@ -6,7 +6,6 @@ from types import TracebackType
 from typing import Any
 
 import FreeCAD
-import FreeCADGui as Gui
 
 from ...objects.kinds import Document
 from .messages import report
@@ -28,14 +27,6 @@ def abort(document: Document) -> None:
         document.abortTransaction()
     else:
         commit(document)
-
-
-def end_left_over() -> None:
-    """Ends an undo step that is open while no panel is that could own it, as one that had changed nothing of a document
-    that was closed: it would take in all that is done next, in any document, and a panel's Cancel would take that back.
-    """
-    if not Gui.Control.activeDialog():
-        FreeCAD.closeActiveTransaction(False)
 
 
 class transaction:

@@ -12,7 +12,10 @@ export PYTHONPATH=$root/Mod/BeltGrinding:$build/python${PYTHONPATH:+:$PYTHONPATH
 export QTWEBENGINE_DISABLE_SANDBOX=1 LANG=${LANG:-C.UTF-8}
 # numpy's functions for AVX-512 round otherwise, and the examples' parts with them: figures and pictures are the same
 # on every processor without these.
-export NPY_DISABLE_CPU_FEATURES="AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL"
+# numpy warns of those that a processor lacks, which our messages would then begin with.
+if grep -qw avx512f /proc/cpuinfo; then
+    export NPY_DISABLE_CPU_FEATURES="AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL"
+fi
 # What one checkout compiled serves another on the same machine: ccache sees paths from the checkout on.
 export CCACHE_BASEDIR=${CCACHE_BASEDIR:-$root} CCACHE_NOHASHDIR=1
 

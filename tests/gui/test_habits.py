@@ -350,7 +350,7 @@ def test_a_message_of_limits_names_the_field():
     assert "WheelRadius" not in text and "radius_mm" not in text, text
 
 
-@pytest.mark.parametrize("opened", ["double click", "menu"])
+@pytest.mark.parametrize("opened", ["double click", "menu", "plan"])
 def test_cancel_takes_back_no_more_than_its_panel_did(opened):
     """Also where a document was closed within an undo step, which FreeCAD keeps open for the next one."""
     FreeCAD.newDocument("Closed").openTransaction("left over")
@@ -359,7 +359,13 @@ def test_cancel_takes_back_no_more_than_its_panel_did(opened):
     start()
     job = beltgrinding.open_example(Path.cwd() / "example")
     machine = job.Document.BeltMachine
+    plan = beltgrinding.make_plan(job, compute=False)
     names = [obj.Name for obj in job.Document.Objects]
+    if opened == "plan":
+        plan.ViewObject.Proxy.doubleClicked(plan.ViewObject)
+        press("Close")
+        assert [obj.Name for obj in job.Document.Objects] == names
+        return
     if opened == "menu":
         menu("Belt machine")
     else:

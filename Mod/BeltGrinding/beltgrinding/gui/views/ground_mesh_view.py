@@ -50,13 +50,12 @@ class GroundMeshView(ColouredMeshView):
         spec = legend.deviation(*scale, obj.OutOfDate, standard=True)
         return spec._replace(name=name_of(obj))
 
-    def doubleClicked(self, view: ViewObject) -> bool:
+    def open(self, view: ViewObject) -> None:
         from ...objects import ground_mesh
         from ..common.transaction import transaction
 
         with transaction(view.Object.Document, translate("BeltGrinding", "Ground part as mesh")):
             ground_mesh.make(view.Object)
-        return True
 
     def verb(self) -> str:
         return translate("BeltGrinding", "Make the mesh anew")

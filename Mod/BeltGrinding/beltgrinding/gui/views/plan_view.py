@@ -76,11 +76,10 @@ class PlanView(View):
         marks = tuple(Mark(COLOURS[state], said[reasons.WORDS[state]]) for state in order)
         return Spec([], {}, said["why"], ("", ""), (False, False), "", name_of(obj), marks)
 
-    def doubleClicked(self, view: ViewObject) -> bool:
+    def open(self, view: ViewObject) -> None:
         from ..panels.plan_panel import show
 
         show(view.Object)
-        return True
 
     def setEdit(self, view: ViewObject, mode: int = 0) -> bool | None:
         return None

@@ -328,11 +328,10 @@ class VerdictView(Undrawn):
     ICON = "BeltGrinding_Verdict"
     COMMANDS = ("BeltGrinding_Zones", "BeltGrinding_Deviation")
 
-    def doubleClicked(self, view: ViewObject) -> bool:
+    def open(self, view: ViewObject) -> None:
         from ..docks.verdict_dock import VerdictDock
 
         VerdictDock.open(view.Object)
-        return True
 
     def setEdit(self, view: ViewObject, mode: int = 0) -> bool | None:
         return None
@@ -347,11 +346,10 @@ class SimulationView(Undrawn):
     ICON = "BeltGrinding_Simulate"
     COMMANDS = ("BeltGrinding_Simulate", "BeltGrinding_Deviation", "BeltGrinding_ImportResult")
 
-    def doubleClicked(self, view: ViewObject) -> bool:
+    def open(self, view: ViewObject) -> None:
         from ..panels.simulation_panel import show_result
 
         show_result(view.Object)
-        return True
 
     def verb(self) -> str:
         return translate("BeltGrinding", "Show result")
@@ -363,11 +361,10 @@ class StudyView(Undrawn):
     ICON = "BeltGrinding_Study"
     COMMANDS = ("BeltGrinding_Study", "BeltGrinding_Simulate")
 
-    def doubleClicked(self, view: ViewObject) -> bool:
+    def open(self, view: ViewObject) -> None:
         from ..docks.study_dock import show
 
         show(view.Object)
-        return True
 
     def setEdit(self, view: ViewObject, mode: int = 0) -> bool | None:
         return None
@@ -382,11 +379,10 @@ class RobotProgramView(Undrawn):
     ICON = "BeltGrinding_RobotProgram"
     COMMANDS = ("BeltGrinding_Cell",)
 
-    def doubleClicked(self, view: ViewObject) -> bool:
+    def open(self, view: ViewObject) -> None:
         from ..panels.robot_program_panel import show
 
         show(view.Object)
-        return True
 
     def setEdit(self, view: ViewObject, mode: int = 0) -> bool | None:
         return None

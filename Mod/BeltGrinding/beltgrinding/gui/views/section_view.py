@@ -55,11 +55,10 @@ class SectionView(View):
             self.points.point.setValues(0, len(points), points)
             self.lines.numVertices.setValues(0, len(counts), counts)
 
-    def doubleClicked(self, view: ViewObject) -> bool:
+    def open(self, view: ViewObject) -> None:
         from ..docks.section_dock import SectionDock
 
         SectionDock.open(view.Object)
-        return True
 
     def verb(self) -> str:
         return translate("BeltGrinding", "Show the plot")

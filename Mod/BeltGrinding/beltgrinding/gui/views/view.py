@@ -15,7 +15,7 @@ from ..common.icons import icon, qicon, stale_icon
 from ..common.kinds import Icon, Menu
 from ..common.redraw import Once, drawing
 from ..common.keyboard import take_keyboard
-from ..common.editing import edit
+from ..common.editing import edit_in_step, end_left_over
 
 if TYPE_CHECKING:
     from ..scene.legend import Legend
@@ -95,8 +95,13 @@ class View(Stateless):
         raise NotImplementedError
 
     def doubleClicked(self, view: ViewObject) -> bool:
-        edit(view.Object)
+        end_left_over()
+        self.open(view)
         return True
+
+    def open(self, view: ViewObject) -> None:
+        """Shows what a double click shows."""
+        edit_in_step(view.Object)
 
     def setupContextMenu(self, view: ViewObject, menu: Menu) -> None:
         """The object's own entries in the tree's context menu."""

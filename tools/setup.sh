@@ -12,10 +12,14 @@ export PYTHONPATH=$root/Mod/BeltGrinding:$build/python${PYTHONPATH:+:$PYTHONPATH
 export QTWEBENGINE_DISABLE_SANDBOX=1 LANG=${LANG:-C.UTF-8}
 # numpy's functions for AVX-512 round otherwise, and the examples' parts with them: figures and pictures are the same
 # on every processor without these.
-# numpy warns of those that a processor lacks, which our messages would then begin with.
-if grep -qw avx512f /proc/cpuinfo; then
-    export NPY_DISABLE_CPU_FEATURES="AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL"
-fi
+# numpy warns of those that the processor lacks, which our messages would then begin with.
+vectors=
+for one in AVX512F:avx512f AVX512CD:avx512cd AVX512_SKX:avx512vl AVX512_CLX:avx512_vnni AVX512_CNL:avx512vbmi \
+    AVX512_ICL:avx512_vbmi2; do
+    if grep -qw "${one#*:}" /proc/cpuinfo; then vectors+=" ${one%%:*}"; fi
+done
+if [ -n "$vectors" ]; then export NPY_DISABLE_CPU_FEATURES=${vectors# }; else unset NPY_DISABLE_CPU_FEATURES; fi
+unset one vectors
 # What one checkout compiled serves another on the same machine: ccache sees paths from the checkout on.
 export CCACHE_BASEDIR=${CCACHE_BASEDIR:-$root} CCACHE_NOHASHDIR=1
 

@@ -5,14 +5,15 @@ from __future__ import annotations
 import heapq
 from collections.abc import Sequence
 
+from ..base.kinds import Json
 from .rough import Move, Moves, Tried
 
 HOPE = 0.3  # of what a move may mend: so much better than before it is taken to end
 
 
 class Queue:
-    """Moves from passes that were tried; none twice. ``sources``: as ``by_rules.others``; ``seen``: what is not to be tried again,
-    to which is added what is taken."""
+    """Moves from passes that were tried; none twice, and none back to those. ``sources``: as ``by_rules.others``; ``seen``: what is
+    not to be tried again, to which is added what is."""
 
     def __init__(self, sources: Sequence[Moves], seen: set[str]) -> None:
         self._sources, self._seen = sources, seen
@@ -21,6 +22,7 @@ class Queue:
 
     def add(self, one: Tried) -> None:
         """What may mend passes that were tried."""
+        self._seen.add(_key(one.machine, one.wanted))
         for source in self._sources:
             for share, move in source(one):
                 self._count += 1  # of equals the first
@@ -32,8 +34,12 @@ class Queue:
         found: list[Move] = []
         while self._waiting and len(found) < most:
             move = heapq.heappop(self._waiting)[2]
-            key = repr((sorted(move[1].items(), key=str), sorted(move[2].items(), key=str)))
+            key = _key(*move[1:])
             if key not in self._seen:
                 self._seen.add(key)
                 found.append(move)
         return found
+
+
+def _key(machine: Json, wanted: Json) -> str:
+    return repr((sorted(machine.items(), key=str), sorted(wanted.items(), key=str)))

@@ -380,8 +380,7 @@ class _Run:
         return tried
 
     def _finals(self, default: Tried | None, tried: list[Tried]) -> Tried:
-        """The best of full plans of the best that have none yet, what the rules found from the start among them unless it is far
-        behind."""
+        """The best of full plans of the best that have none yet, the start among them unless it is far behind."""
         chosen = _different(tried)[:FINALS]
         if default is not None and not any(_same(default, one) for one in chosen):
             if not chosen or default.in_tolerance > chosen[0].in_tolerance - FAR_BEHIND:

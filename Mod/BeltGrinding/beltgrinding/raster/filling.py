@@ -52,7 +52,7 @@ def more(
         except InputError as error:
             if error.code != TOO_MANY:
                 raise
-            break  # what is left stays, and is told
+            break  # the gaps that are left stay without a pass
         near = region.restricted(levels, points, 0.5 * step_over)
         pieces = [
             piece

@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 
 from ..base.kinds import Array, Json
-from ..engine import Fact, InputError
+from ..engine import InputError
 from . import reachable
-from .clearing import Clearing
 
 KEY = "raster.further_passes"
 MOST_POSES = 300_000
@@ -46,30 +45,16 @@ def join(parts: Sequence[Json]) -> dict[str, Any]:
     return result
 
 
-def repeat(result: dict[str, Any], count: int, clearing: Clearing) -> list[Fact]:
-    """Has all passes of a path run through ``count`` times, from the end back to the beginning as from pass to pass. Returns what is
-    to be told. Raises InputError."""
+def repeat(result: dict[str, Any], count: int) -> None:
+    """Has all passes of a path run through ``count`` times, from the end back to the beginning as from pass to pass. Raises InputError."""
     if count == 1:
-        return []
+        return
     _refuse(count * len(result["frames"]), "raster.repeats")
-    told = []
-    if "fit" in result and clearing.ways_blocked(
-        result["contacts"][[-1, 0]], np.array([True, True])
-    ):
-        told.append(
-            Fact(
-                "raster.way_back_blocked",
-                "from the end of the passes straight back to their beginning {tool} goes through the part; lead the "
-                "robot there by hand, or enlarge clearance_mm",
-                tool=clearing.name,
-            )
-        )
     again = join([result] * count)
     for name in (*OF_POSES, "passes"):
         result[name] = again[name]
     if "fit" in result:
         result["fit"] = np.tile(result["fit"], count)
-    return told
 
 
 def _refuse(poses: int, key: str = KEY) -> None:

@@ -78,8 +78,8 @@ def load_job(path: Path | str) -> dict[str, Any]:
 def raster(
     job: Job | Json, settings: Json, context: Context = None, looked_at: bool = True
 ) -> dict[str, Any]:
-    """Lays passes on faces of a validated job's design. ``looked_at``: what they do is, for warnings: else fit, places, reachable and
-    check are left away.
+    """Lays passes on faces of a validated job's design. ``looked_at``: what they do is looked at, for warnings; else fit, reachable
+    and check are left away, and places may be.
 
     Returns dict(frames (n, 4, 4) base_from_tcp mm, feeds (n,) mm/s, forces (n,) N, -1: the job's,
     rapid (n,) bool, lines (n,) 0, as ``core.ToolPath`` takes them, the raster's own passes and then its further groups; contacts (n, 4, 4)
@@ -137,7 +137,9 @@ def raster(
         result["reachable"] = reachable.told(result["places"], clearing.tool, settings, warnings)
         result["check"] = path_check.check(read, settings, result, context)
         warnings += result["check"]["problems"]
-    warnings += joined.repeat(result, settings["repeats"], clearing)
+        if settings["repeats"] > 1:
+            telling.way_back(clearing, result, warnings)
+    joined.repeat(result, settings["repeats"])
     result.update(along=settings["along"], direction=settings["direction"], tried=tried)
     result["warnings"] = list({str(one): one for one in warnings}.values())  # of a group each
     return result

@@ -45,6 +45,19 @@ def ways(clearing: Clearing, result: dict[str, Any], warnings: Facts) -> None:
         )
 
 
+def way_back(clearing: Clearing, result: dict[str, Any], warnings: Facts) -> None:
+    """Of passes that are run through more than once."""
+    if clearing.ways_blocked(result["contacts"][[-1, 0]], np.array([True, True])):
+        warnings.append(
+            core.Fact(
+                "raster.way_back_blocked",
+                "from the end of the passes straight back to their beginning {tool} goes through the part; lead the "
+                "robot there by hand, or enlarge clearance_mm",
+                tool=clearing.name,
+            )
+        )
+
+
 def fit(clearing: Clearing, settings: Json, result: dict[str, Any], warnings: Facts) -> Floats:
     depth = np.zeros(len(result["frames"]))
     touching = np.flatnonzero(result["contact"])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -76,7 +77,8 @@ def best(
     error: why there is no path) of all ways). residual: standard deviation of the removal over the area, by its mean:
     what stays of an allowance that comes off on the mean; untouched: of the area; duration_s: by the robot, whose time
     lets sharp turns grind deep.
-    A way whose path takes nothing off is as one without a path. Raises InputError (no way gives a path), Cancelled.
+    A way whose path takes nothing off is as one without a path. Each is ground on a thread of its own while the next
+    is laid. Raises InputError (no way gives a path), Cancelled.
     """
     context = context or core.RunContext()
     area = sum(shape.face_area(face) for face in faces)
@@ -84,24 +86,34 @@ def best(
     angles = BELT_ANGLES if tool.of(job).belt else ANGLES
     tried: list[dict[str, Any]] = []
     ways = candidates(coarse, angles)
-    first: InputError | None = None
     if settings["order"] == "helix":
         ways = [{"along": "rings"}]
-    for way in ways:
-        one: dict[str, Any] = {**way, "chosen": False}
-        tried.append(one)
+    with ThreadPoolExecutor(core.threads()) as beside:
+        judged: list[Future[dict[str, Any]] | InputError] = []
         try:
-            path = lay({**settings, **way, "footprint": "cylinder"}, context)
-            judged = _judged(job, given, shape, faces, area, settings, path, context)
-        except InputError as error:
-            first = first or error
-            one["error"] = error
-            continue
-        one.update(judged)
+            for way in ways:
+                try:
+                    path = lay({**settings, **way, "footprint": "cylinder"}, context)
+                except InputError as error:
+                    judged.append(error)
+                    continue
+                parts = (job, given, shape, faces, area, settings, path, context)
+                judged.append(beside.submit(_judged, *parts))
+            for way, found in zip(ways, judged):
+                one: dict[str, Any] = {**way, "chosen": False}
+                tried.append(one)
+                try:
+                    one.update(
+                        {"error": found} if isinstance(found, InputError) else found.result()
+                    )
+                except InputError as error:
+                    one["error"] = error
+        except BaseException:
+            context.cancel()  # what is still being ground, for which the way out would wait
+            raise
     laid = [k for k, one in enumerate(tried) if "residual" in one]
     if not laid:
-        assert first is not None
-        raise first
+        raise tried[0]["error"]
     # One that only lies as if the wheel fitted is worse than any other.
     laid = [k for k in laid if not tried[k]["no_room"]] or laid
     least = min(tried[k]["residual"] for k in laid)

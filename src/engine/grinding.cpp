@@ -1,6 +1,7 @@
 #include "engine/grinding.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "actuated_wheel.h"
 #include "base/stopwatch.h"
@@ -9,8 +10,10 @@ namespace beltgrinding {
 namespace {
 
 // Explicit integration in time: in one go the surface may recede by this share of the wheel's
-// indentation, so that the pressure follows the removal.
-constexpr double kRecession = 0.25;
+// indentation, so that the pressure follows the removal; where that is asked for less exactly than
+// by default, of more, by the root of its tolerance, since the error goes by the share's square.
+constexpr double kRecession = 0.25, kMostRecession = 1.0;
+constexpr double kTolerance = 1e-3;
 constexpr double kMiddle = 0.5;          // of a part's time: a wheel's pressure is that then
 constexpr int kMaxParts = 200;           // of a step
 constexpr double kJoule = 1e-3;          // of a N mm
@@ -26,12 +29,14 @@ void rate_under(const RemovalLaw& law, const DisplacedPressure& pressure, const 
 }
 
 Grinding::Grinding(SampleBlocks& blocks, Pressing& pressing, const RemovalLaw& law,
-                   const ProcessSettings& process, Recorders& recorders)
+                   const ProcessSettings& process, double tolerance, Recorders& recorders)
     : blocks_(blocks),
       pressing_(pressing),
       law_(law),
       process_(process),
       recorders_(recorders),
+      recession_(
+          std::clamp(kRecession * std::sqrt(tolerance / kTolerance), kRecession, kMostRecession)),
       now_{.belt = process.belt, .clock = -process.pause} {}
 
 double Grinding::set_rate(const PathStep& step) {
@@ -142,7 +147,7 @@ double Grinding::cut_all(const PathStep& step) {
 
 double Grinding::holds(double left, double least) const {
     if (!(fastest_ > 0.0) || pressing_.gave_up()) return left;
-    return std::clamp(kRecession * pressing_.indentation() / fastest_, std::min(least, left), left);
+    return std::clamp(recession_ * pressing_.indentation() / fastest_, std::min(least, left), left);
 }
 
 BeltState Grinding::load(double part) {

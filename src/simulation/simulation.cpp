@@ -168,7 +168,8 @@ SimulationResult simulate(HeightField& field, const ToolPath& path, const Contac
     const double cell = contact_cell(field, tool_envelope(process).wheel, options.resolution);
     refuse_rigid(model, process);
     Pressing pressing(process, cell, options.resolution.contact_tolerance, model, context);
-    Grinding grinding(*blocks, pressing, law, process, recorders);
+    Grinding grinding(*blocks, pressing, law, process, options.resolution.contact_tolerance,
+                      recorders);
     const auto control = make_wheel_control(process, pressing);
     Ground ground(*blocks, options.outputs.first_motion);
     CheckpointKeeper checkpoints(options.outputs.checkpoints, steps, blocks->count(),

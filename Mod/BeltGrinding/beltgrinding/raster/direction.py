@@ -12,7 +12,7 @@ import numpy as np
 
 from ..base.kinds import Array, Context, Floats, Json
 from ..engine import InputError, core
-from ..job import engine_input, robot_time
+from ..job import engine_input, resolution, robot_time
 from ..job.settings import Job
 from ..job.workpiece import apply_stock
 from . import around, tool
@@ -150,7 +150,11 @@ def _judged(
         machine = pressing.coarse(machine)
     given = replace(
         given,
-        machine=replace(machine, force_N=settings["force_N"] or machine.force_N),
+        machine=replace(
+            machine,
+            force_N=settings["force_N"] or machine.force_N,
+            contact_tolerance=max(machine.contact_tolerance, resolution.TOLERANCE),
+        ),
         simulation=replace(steps, max_travel_mm=max(step, steps.max_travel_mm)),
         max_angle=max(turn, math.radians(steps.max_angle_deg)),
         must_touch=False,

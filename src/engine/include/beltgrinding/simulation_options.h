@@ -86,7 +86,7 @@ struct ProcessSettings {
 /// How finely the process is computed.
 struct Resolution {
     double contact_spacing = 1.0;  ///< mm, cell of the wheel's grid (never finer than the samples)
-    double contact_tolerance = 1e-3;  ///< relative error of the pressure field
+    double contact_tolerance = 1e-3;  ///< relative error of the pressure
     double max_travel = 1.0;          ///< mm, how far the contact point may move in a step
     double max_angle = 0.02;          ///< rad, how far the wheel may turn against the work in one
 

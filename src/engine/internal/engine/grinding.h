@@ -26,9 +26,10 @@ struct GrindingMemory {
 /// The law at work under the pressed wheel: lowers the field, and counts what the belt has done.
 class Grinding final : public Keeps<Latest<GrindingMemory>> {
   public:
-    /// All of them must outlive it. The recorders are told of what is pressed and removed.
+    /// All of them must outlive it. `tolerance`: relative, of the pressure, also while the surface
+    /// recedes under it. The recorders are told of what is pressed and removed.
     Grinding(SampleBlocks& blocks, Pressing& pressing, const RemovalLaw& law,
-             const ProcessSettings& process, Recorders& recorders);
+             const ProcessSettings& process, double tolerance, Recorders& recorders);
 
     /// Tells what is pressed next, before it is, how much of the surface the law takes under its
     /// pressure in `duration` s, or a wheel, in half of that: so its pressure is that on the
@@ -93,6 +94,7 @@ class Grinding final : public Keeps<Latest<GrindingMemory>> {
     const RemovalLaw& law_;
     const ProcessSettings& process_;
     Recorders& recorders_;
+    double recession_;  // share of the wheel's indentation by which it may recede in one go
     BlockSet* reached_ = nullptr;
     GrindingMemory now_;
     double impulse_ = 0.0;         // N s

@@ -12,7 +12,7 @@ namespace {
 // Explicit integration in time: in one go the surface may recede by this share of the wheel's
 // indentation, so that the pressure follows the removal; where that is asked for less exactly than
 // by default, of more, by the root of its tolerance, since the error goes by the share's square.
-constexpr double kRecession = 0.25, kMostRecession = 1.0;
+constexpr double kRecession = 0.25, kMostRecession = 0.5;
 constexpr double kTolerance = 1e-3;
 constexpr double kMiddle = 0.5;          // of a part's time: a wheel's pressure is that then
 constexpr int kMaxParts = 200;           // of a step

@@ -161,7 +161,7 @@ def test_without_time_or_wish_it_gives_what_the_rules_give(small):
 @pytest.mark.slow
 def test_further_wheels_are_told_with_what_they_would_bring(small):
     # With little force the wheel's rim reaches into the trough further than its shape does.
-    job = job_of(trough(radius=8.0, half=60.0), radius=20.0, width=8.0, tolerance=0.04)
+    job = job_of(trough(radius=8.0, length=12.0, half=60.0), radius=20.0, width=8.0, tolerance=0.04)
     further = wheels.mounted(job, [wheels.Wheel(6.0, 3.0), wheels.Wheel(100.0, 8.0)])
     along = {**ACROSS, "direction": [1.0, 0.0, 0.0], "step_over_mm": 0.0}
     found = grinding.grind(job, along, QUICK, search=Search(search.UNTIL_IT_PAYS, further=further))

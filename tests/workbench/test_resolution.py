@@ -41,6 +41,19 @@ def test_samples_lie_apart_as_the_same_cells_of_the_contact_allow(coarse):
     assert removed[0] == pytest.approx(removed[1], rel=0.02) and removed[0] > 1.0
 
 
+def test_deep_cuts_are_followed_as_exactly_as_contacts_are_solved():
+    left = {}
+    for tolerance in (1e-4, 1e-3, 1e-2):
+        job = plate_job()
+        job["sampling"]["spacing_mm"] = 0.6
+        job["belt_machine"]["contact_tolerance"] = tolerance
+        job["law"] = {"coefficient_mm2_per_N": 1e-3}  # as deep in a step as the wheel is pressed in
+        left[tolerance] = beltgrinding.run(job).field.height.astype(float)
+    removed = np.nansum(left[1e-4].max() - left[1e-4])
+    off = {one: np.nansum(abs(left[one] - left[1e-4])) / removed for one in (1e-3, 1e-2)}
+    assert off[1e-3] < 1e-3 < off[1e-2] < 1e-2, off
+
+
 def test_what_is_coarser_already_stays_so():
     job = jobs.validate(job_of(spacing=0.9))
     job["belt_machine"]["contact_tolerance"] = 0.05

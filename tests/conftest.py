@@ -36,9 +36,9 @@ def pytest_make_collect_report():
 
 
 def pytest_collection_modifyitems(config, items):
-    """With BELTGRINDING_HALF 0 or 1, every second of those that take long is left out."""
-    half = os.environ.get("BELTGRINDING_HALF", "")
-    if half not in ("0", "1"):
+    """With BELTGRINDING_THIRD 0, 1 or 2, only every third of those that take long is passed."""
+    third = os.environ.get("BELTGRINDING_THIRD", "")
+    if third not in ("0", "1", "2"):
         return
 
     def name(item):
@@ -48,7 +48,7 @@ def pytest_collection_modifyitems(config, items):
         return item.get_closest_marker("slow") or item.path.parent.name in SLOW
 
     numbers = {one: k for k, one in enumerate(sorted({name(i) for i in items if takes_long(i)}))}
-    out = [item for item in items if numbers.get(name(item), int(half)) % 2 != int(half)]
+    out = [item for item in items if numbers.get(name(item), int(third)) % 3 != int(third)]
     if out:
         items[:] = [item for item in items if item not in set(out)]
         config.hook.pytest_deselected(items=out)

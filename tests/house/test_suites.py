@@ -136,7 +136,7 @@ def test_what_is_marked_slow_is_left_to_all_and_nothing_else(checkout, options, 
     assert "addopts" not in settings.partition("\n[")[0]
 
 
-def collected(*folders, half=""):
+def collected(*folders, third=""):
     """Ids of the tests that pytest would pass."""
     done = subprocess.run(
         [
@@ -149,7 +149,7 @@ def collected(*folders, half=""):
             "no:cacheprovider",
             *folders,
         ],
-        env={**os.environ, "BELTGRINDING_HALF": half},
+        env={**os.environ, "BELTGRINDING_THIRD": third},
         cwd=ROOT,
         capture_output=True,
         text=True,
@@ -158,20 +158,20 @@ def collected(*folders, half=""):
     return [line for line in done.stdout.splitlines() if "::" in line]
 
 
-def test_the_halves_together_are_all_and_share_what_is_quick():
+def test_the_thirds_together_are_all_and_share_what_is_quick():
     quick, some = "tests/programs/test_apt.py", "tests/validation/test_noses.py"
     for suite in ("tests/library", some):
         whole = collected(suite)
-        one, other = (collected(suite, half=half) for half in "01")
-        assert one and other and sorted(one + other) == sorted(whole)
-    assert collected(quick, half="0") == collected(quick, half="1") == collected(quick)
+        thirds = [collected(suite, third=third) for third in "012"]
+        assert all(thirds) and sorted(sum(thirds, [])) == sorted(whole)
+    assert all(collected(quick, third=third) == collected(quick) for third in "012")
 
 
-@pytest.mark.parametrize("half", "01")
-def test_a_half_is_passed_by_all_suites(checkout, half):
-    status, lines, besides = checkout("--half", half, gui="echo '7 tests left out'")
+@pytest.mark.parametrize("third", "012")
+def test_a_third_is_passed_by_all_suites(checkout, third):
+    status, lines, besides = checkout("--third", third, gui="echo '7 tests left out'")
     assert status == 0 and lines[-1] == f"{len(suites_of())} passed, 0 failed, 0 skipped"
-    assert "the other half of what takes long: 7 tests" in besides
+    assert "two thirds of what takes long: 7 tests" in besides
 
 
 # Files all of whose tests are slow: the file whose quick tests are of the same kind.

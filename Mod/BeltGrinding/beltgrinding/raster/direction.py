@@ -89,13 +89,14 @@ def best(
     if settings["order"] == "helix":
         ways = [{"along": "rings"}]
     with ThreadPoolExecutor(core.threads()) as beside:
-        judged: list[Future[dict[str, Any]] | InputError] = []
+        judged: list[Future[dict[str, Any]]] = []
         try:
             for way in ways:
                 try:
                     path = lay({**settings, **way, "footprint": "cylinder"}, context)
                 except InputError as error:
-                    judged.append(error)
+                    judged.append(Future())
+                    judged[-1].set_exception(error)
                     continue
                 parts = (job, given, shape, faces, area, settings, path, context)
                 judged.append(beside.submit(_judged, *parts))
@@ -103,9 +104,7 @@ def best(
                 one: dict[str, Any] = {**way, "chosen": False}
                 tried.append(one)
                 try:
-                    one.update(
-                        {"error": found} if isinstance(found, InputError) else found.result()
-                    )
+                    one.update(found.result())
                 except InputError as error:
                     one["error"] = error
         except BaseException:

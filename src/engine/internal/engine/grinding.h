@@ -27,7 +27,7 @@ struct GrindingMemory {
 class Grinding final : public Keeps<Latest<GrindingMemory>> {
   public:
     /// All of them must outlive it. `tolerance`: relative, of the pressure, also while the surface
-    /// recedes under it. The recorders are told of what is pressed and removed.
+    /// recedes under it. It tells the recorders what is pressed and removed.
     Grinding(SampleBlocks& blocks, Pressing& pressing, const RemovalLaw& law,
              const ProcessSettings& process, double tolerance, Recorders& recorders);
 

@@ -429,7 +429,9 @@ def test_a_real_blade_is_covered(along):
         ways += [a + share * (b - a) for a, b in zip(places[:-1], places[1:])]
     ways = np.vstack(ways)
     nearest = np.array([np.linalg.norm(ways - p, axis=1).min() for p in field.points])
-    assert np.percentile(nearest, 99) < 3.3 and nearest.max() < 6
+    # Of the area: round the leading edge samples are many and small.
+    far = field.areas[nearest >= 3.3].sum() / field.areas.sum()
+    assert far < 0.005 and nearest.max() < 5.5
     # Poses lie on the surface and look into it.
     at = found["contacts"][found["contact"]]
     samples = core.sample_faces(workpiece.read_design(job["design"]), [0], 0.15)[0]

@@ -311,8 +311,12 @@ def _come_to_rest(quiet, patience=3, most=30):
 
 def _as_everywhere():
     """Shows what every computer or test run writes otherwise as one text: the time that a simulation
-    took, the folder of a file; and an empty clipboard, by which *Paste* is grey. Returns [(widget, its text)].
+    took, the folder of a file; and an empty clipboard, by which *Paste* is grey. The tree is without the keyboard's
+    focus, which frames a line of it and comes there, or not, by chance. Returns [(widget, its text)].
     """
+    focused = QtGui.QApplication.focusWidget()
+    if focused is not None and focused.metaObject().className() == "Gui::TreeWidget":
+        focused.clearFocus()
     QtGui.QApplication.clipboard().clear()
     QtGui.QApplication.setCursorFlashTime(0)
     replaced = []

@@ -36,10 +36,11 @@ def pytest_make_collect_report():
 
 
 def pytest_collection_modifyitems(config, items):
-    """With BELTGRINDING_THIRD 0, 1 or 2, only every third of those that take long is passed."""
-    third = os.environ.get("BELTGRINDING_THIRD", "")
-    if third not in ("0", "1", "2"):
+    """With BELTGRINDING_SHARE 2/5, of those that take long only the second of every five is passed."""
+    share = os.environ.get("BELTGRINDING_SHARE", "")
+    if not share:
         return
+    which, parts = (int(number) for number in share.split("/"))
 
     def name(item):
         return item.nodeid.partition("[")[0]
@@ -47,8 +48,8 @@ def pytest_collection_modifyitems(config, items):
     def takes_long(item):
         return item.get_closest_marker("slow") or item.path.parent.name in SLOW
 
-    numbers = {one: k for k, one in enumerate(sorted({name(i) for i in items if takes_long(i)}))}
-    out = [item for item in items if numbers.get(name(item), int(third)) % 3 != int(third)]
+    numbers = {one: k for k, one in enumerate(sorted({name(i) for i in items if takes_long(i)}), 1)}
+    out = [item for item in items if (numbers.get(name(item), which) - which) % parts]
     if out:
         items[:] = [item for item in items if item not in set(out)]
         config.hook.pytest_deselected(items=out)

@@ -32,7 +32,7 @@ def ci(tmp_path):
             **os.environ,
             "PATH": f"{checkout / 'bin'}:{os.environ['PATH']}",
             "BELTGRINDING_COMPAT": str(compat),
-            "CI_THIRD": "2",
+            "CI_SHARE": "3/5",
             **variables,
         }
         done = subprocess.run(
@@ -55,13 +55,13 @@ def test_figures_add_up(ci):
     assert lines[-1] == "12 passed, 0 failed, 3 skipped"  # one more of FreeCAD 1.0, one of tidy
 
 
-def test_a_third_of_what_takes_long_is_passed_as_the_commit_says(ci):
+def test_a_share_of_what_takes_long_is_passed_as_the_commit_says(ci):
     told = 'echo "asked $*"; echo 1 passed, 0 failed, 0 skipped'
     status, lines = ci(test=told)
-    assert status == 0 and "asked --third 2" in lines
-    assert "third 2 was passed" in lines[-2]
-    _, lines = ci(test=told, CI_THIRD="")  # no commit: a folder without git
-    assert "asked --third 0" in lines
+    assert status == 0 and "asked --share 3/5" in lines
+    assert "3/5 was passed" in lines[-2]
+    _, lines = ci(test=told, CI_SHARE="")  # no commit: a folder without git
+    assert "asked --share 1/5" in lines
 
 
 def test_strictness_reaches_the_tests(ci):
@@ -86,7 +86,7 @@ def test_a_suite_without_its_last_line_is_a_failure(ci, test):
 def test_a_suite_that_fails_after_its_last_line_is_a_failure(ci):
     status, lines = ci(test="echo 10 passed, 0 failed, 2 skipped; exit 7")
     assert status == 1 and lines[-1] == "12 passed, 1 failed, 3 skipped"
-    assert lines[-3] == "tools/test --third 2 ended with status 7."
+    assert lines[-3] == "tools/test --share 3/5 ended with status 7."
 
 
 def test_a_freecad_whose_tests_fail_is_a_failure(ci):

@@ -136,7 +136,7 @@ def test_what_is_marked_slow_is_left_to_all_and_nothing_else(checkout, options, 
     assert "addopts" not in settings.partition("\n[")[0]
 
 
-def collected(*folders, third=""):
+def collected(*folders, share=""):
     """Ids of the tests that pytest would pass."""
     done = subprocess.run(
         [
@@ -149,7 +149,7 @@ def collected(*folders, third=""):
             "no:cacheprovider",
             *folders,
         ],
-        env={**os.environ, "BELTGRINDING_THIRD": third},
+        env={**os.environ, "BELTGRINDING_SHARE": share},
         cwd=ROOT,
         capture_output=True,
         text=True,
@@ -158,20 +158,28 @@ def collected(*folders, third=""):
     return [line for line in done.stdout.splitlines() if "::" in line]
 
 
-def test_the_thirds_together_are_all_and_share_what_is_quick():
+def test_the_shares_together_are_all_and_each_holds_what_is_quick():
     quick, some = "tests/programs/test_apt.py", "tests/validation/test_noses.py"
+    shares = [f"{k}/5" for k in (1, 2, 3, 4, 5)]
     for suite in ("tests/library", some):
         whole = collected(suite)
-        thirds = [collected(suite, third=third) for third in "012"]
-        assert all(thirds) and sorted(sum(thirds, [])) == sorted(whole)
-    assert all(collected(quick, third=third) == collected(quick) for third in "012")
+        parts = [collected(suite, share=share) for share in shares]
+        assert sorted(sum(parts, [])) == sorted(whole)
+        assert all(parts) or suite == some  # a suite without a test has failed
+    assert all(collected(quick, share=share) == collected(quick) for share in shares)
 
 
-@pytest.mark.parametrize("third", "012")
-def test_a_third_is_passed_by_all_suites(checkout, third):
-    status, lines, besides = checkout("--third", third, gui="echo '7 tests left out'")
+@pytest.mark.parametrize("share", ["1/5", "5/5"])
+def test_a_share_is_passed_by_all_suites(checkout, share):
+    status, lines, besides = checkout("--share", share, gui="echo '7 tests left out'")
     assert status == 0 and lines[-1] == f"{len(suites_of())} passed, 0 failed, 0 skipped"
-    assert "two thirds of what takes long: 7 tests" in besides
+    assert f"{share} was passed, not the other 7 tests" in besides
+
+
+@pytest.mark.parametrize("share", ["0/5", "6/5", "5", ""])
+def test_no_share_is_taken_for_another(checkout, share):
+    status, _, besides = checkout("--share", share)
+    assert status == 2 and "usage: tools/test" in besides
 
 
 # Files all of whose tests are slow: the file whose quick tests are of the same kind.

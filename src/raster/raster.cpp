@@ -19,6 +19,7 @@ constexpr double kLeastGradient = 0.1;  // of the usual one: 84 degrees against 
 constexpr double kSliver = 0.02;        // area over longest edge squared: its gradient is noise
 constexpr double kRounding = 1e-9;      // of a step-over
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kNoPart = std::numeric_limits<std::size_t>::max();  // which no level crosses
 
 struct TriangleFacts {
     double area = 0.0;      ///< mm2
@@ -62,6 +63,9 @@ class Raster {
             for (const auto& part : parts()) even_levels(part);
         }
         context_.throw_if_cancelled();
+        for (std::size_t i = 0; i < of_surface_.size(); ++i)
+            if (!surface_.wanted.empty() && surface_.wanted[of_surface_[i]] == 0)
+                mesh_.part[i] = kNoPart;
         const bool even = options_.spacing == RasterSpacing::kEven;  // distances have no period
         result_.lines = level_lines(mesh_, levels_, even ? 0.0 : surface_.period,
                                     options_.split_turn, options_.smoothing, context_);
@@ -102,6 +106,7 @@ class Raster {
             mesh_.normal.push_back(
                 {surface_.normal[t[0]], surface_.normal[t[1]], surface_.normal[t[2]]});
             mesh_.part.push_back(0);
+            of_surface_.push_back(i);
         }
     }
 
@@ -281,6 +286,7 @@ class Raster {
     const RasterOptions& options_;
     const RunContext& context_;
     LevelMesh mesh_;
+    std::vector<std::size_t> of_surface_;  // the number there of each triangle
     std::vector<TriangleFacts> facts_;
     std::vector<Level> levels_;
     RasterLines result_;
@@ -317,6 +323,9 @@ RasterLines raster_lines(const RasterSurface& surface, const RasterOptions& opti
         surface.normal.size() != surface.point.size())
         throw InputError("raster.lengths",
                          "a raster needs a normal for every point, scalars for every triangle");
+    if (!surface.wanted.empty() && surface.wanted.size() != surface.triangles.size())
+        throw InputError("raster.wanted_length",
+                         "a raster needs of every triangle whether lines are wanted on it");
     for (const Triangle& t : surface.triangles)
         for (const std::uint32_t v : t)
             if (v >= surface.point.size())

@@ -267,6 +267,32 @@ TEST(Raster, LeavesNoPassBetweenSurfacesApart) {
     }
 }
 
+TEST(Raster, LaysLinesOnSomeTrianglesWhereItLaysThemOnAll) {
+    for (const RasterSpacing spacing : {RasterSpacing::kLines, RasterSpacing::kEven}) {
+        RasterSurface surface = patch(40, 20, [](double u, double v) {
+            return Sample{{100 * u, 50 * v, 0}, {0, 0, 1}, 50 * v};
+        });
+        const RasterOptions close = options(4.0, spacing);
+        const RasterLines all = raster_lines(surface, close);
+        for (const Triangle& t : surface.triangles)  // the right third
+            surface.wanted.push_back(surface.point[t[0]][0] >= 65 && surface.point[t[1]][0] >= 65 &&
+                                     surface.point[t[2]][0] >= 65);
+        const RasterLines some = raster_lines(surface, close);
+        ASSERT_EQ(some.lines.size(), all.lines.size());
+        EXPECT_EQ(some.distance, all.distance);
+        EXPECT_EQ(some.area, all.area);
+        for (std::size_t k = 0; k < all.lines.size(); ++k) {
+            double least = 100, most = 0;
+            for (const Vec3& p : some.lines[k].point) {
+                least = std::min(least, p[0]), most = std::max(most, p[0]);
+                EXPECT_NEAR(p[1], all.lines[k].point.front()[1], 1e-9);
+            }
+            EXPECT_NEAR(least, 65, 2.5);
+            EXPECT_NEAR(most, 100, 1e-9);
+        }
+    }
+}
+
 TEST(Raster, ThinsToTheFewestPosesWithinTheLimits) {
     RasterLine arc;
     for (int i = 0; i <= 1000; ++i) {
@@ -298,6 +324,9 @@ TEST(Raster, RefusesWhatIsNone) {
     const RasterSurface plate = patch(10, 10, on_plate);
     EXPECT_THROW(raster_lines(plate, options(0.0, RasterSpacing::kLines)), InputError);
     EXPECT_THROW(raster_lines(plate, options(1e-6, RasterSpacing::kEven)), InputError);
+    RasterSurface short_of_one = plate;
+    short_of_one.wanted.assign(plate.triangles.size() - 1, 1);
+    EXPECT_THROW(raster_lines(short_of_one, options(5.0, RasterSpacing::kLines)), InputError);
     const RunContext context;
     context.cancel();
     EXPECT_THROW(raster_lines(plate, options(5.0, RasterSpacing::kEven), context), Cancelled);

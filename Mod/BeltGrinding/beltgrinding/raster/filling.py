@@ -10,7 +10,7 @@ import numpy as np
 
 from ..base.kinds import Array, Floats, Json
 from ..engine import InputError
-from . import passes, reachable, region
+from . import passes, reachable
 from .kinds import Extents, Levels, Piece
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ TOO_MANY = "raster.too_many_passes"  # code of the error where they lie nearer t
 
 
 def more(
-    levels_of: Callable[[float], Levels],
+    levels_of: Callable[[float, Floats, float], Levels],
     seen: Json,
     clearing: Clearing,
     settings: Json,
@@ -37,8 +37,8 @@ def more(
 ) -> Levels:
     """Levels, each of one piece, to lay besides.
 
-    ``levels_of(step_over)``: passes at that distance, as ``clearing.cleared`` takes them; ``seen``: of
-    ``reachable.look``; ``step_over``: mm, of the passes that lie; ``extents``: as there.
+    ``levels_of(step_over, points, margin)``: passes at that distance, where they are within ``margin`` mm of points
+    (n, 3), as ``clearing.cleared`` takes them; ``seen``: of ``reachable.look``; ``step_over``: mm, of the passes that lie; ``extents``: as there.
     """
     left = (seen["state"] == reachable.NO_PASS) & (seen["counted"] > 0)
     enough = LEAST * seen["counted"][seen["fits"]].sum()
@@ -48,12 +48,11 @@ def more(
             break
         points, areas = seen["points"][left], seen["counted"][left]
         try:
-            levels = levels_of(step_over / denser)
+            near = levels_of(step_over / denser, points, 0.5 * step_over)
         except InputError as error:
             if error.code != TOO_MANY:
                 raise
             break  # the gaps that are left stay without a pass
-        near = region.restricted(levels, points, 0.5 * step_over)
         pieces = [
             piece
             for level in clearing.cleared([level for level in near if level])

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..base import schemas
 from ..base.files import in_file
-from ..base.kinds import Context, Facts, Floats, Json
+from ..base.kinds import Array, Context, Facts, Floats, Json
 from ..engine import InputError, core
 from ..job import engine_input, load as jobs, machine as machines, spacing as sampling
 from ..job.settings import Job
@@ -245,9 +245,11 @@ def _laid(
     )
     if fill and not no_room and settings["where_it_collides"] != "warn" and _overlap(result):
 
-        def levels_of(step_over: float) -> Levels:
-            found: Levels = _lines(sheets, settings, step_over, spacing, lever, [], context)
-            found = found if wanted is None else region.restricted(found, *wanted)
+        def levels_of(step_over: float, points: Floats, margin: float) -> Levels:
+            near = points, margin
+            found: Levels = _lines(sheets, settings, step_over, spacing, lever, [], context, near)
+            for some in (near, wanted):
+                found = found if some is None else region.restricted(found, *some)
             return found if kept is None else kept.spared(found)
 
         places = _places(job, shape, faces, settings, result, levels, clearing, context)
@@ -361,6 +363,14 @@ def _finer(area: float, step_over: float) -> float:
     return max(step_over / STEP_SAMPLES, math.sqrt(area / MOST_SAMPLES))
 
 
+def _beside(surface: Json, points: Floats, margin: float) -> Array:
+    """(triangles,) bool: those that have a place within ``margin`` mm of one of the points, and some more."""
+    corners = surface["points"][surface["triangles"]]
+    edges = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
+    near = region.beside(surface["points"], points, margin + float(edges.max()))
+    return near[surface["triangles"]].any(axis=1)
+
+
 def _lines(
     surfaces: Sequence[Json],
     settings: Json,
@@ -369,8 +379,10 @@ def _lines(
     lever: float,
     warnings: Facts,
     context: Context,
+    near: tuple[Floats, float] | None = None,
 ) -> list[list[dict[str, Any]]]:
-    """Pieces of passes of all surfaces: list of levels, each a list of the core's lines."""
+    """Pieces of passes of all surfaces: list of levels, each a list of the core's lines; ``near``: only about there,
+    by points (n, 3) and mm from them."""
     levels, laid = [], settings["spacing"]
     if settings["order"] == "helix":
         surfaces, laid = around.helix(surfaces, step_over), "lines"
@@ -392,6 +404,7 @@ def _lines(
             max_turn=math.radians(settings["max_turn_deg"]),
             lever=lever,
             context=context,
+            wanted=np.empty(0, dtype=bool) if near is None else _beside(surface, *near),
         )
         if found["uncovered_area"] > UNCOVERED * found["area"]:
             share = 100.0 * found["uncovered_area"] / found["area"]

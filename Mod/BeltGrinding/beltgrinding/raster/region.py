@@ -24,6 +24,7 @@ FINE = 0.25  # of the margin: from place to place that is looked at along a pass
 FINEST = 0.05  # mm, of the same
 NEAREST = 0.99  # of a region's points must lie by the faces, or it is another part's
 APART = 2.0  # of the margin: farther than that off the faces is elsewhere
+MOST_CUBES = 1e6  # along one side: the numbers of all fit into 64 bits
 
 
 def of_result(
@@ -102,6 +103,25 @@ def check(points: Floats, faces: Floats, margin: float) -> None:
             key="raster.region_points",
             far=far,
         )
+
+
+def beside(places: Floats, points: Floats, margin: float) -> Array:
+    """(n,) bool of ``places`` (n, 3): whether they may lie within ``margin`` mm of one of ``points`` (m, 3), by cubes as
+    large as that: all that do, and some that lie a little farther."""
+    low = np.minimum(places.min(axis=0), points.min(axis=0))
+    size = np.maximum(places.max(axis=0), points.max(axis=0)) - low
+    margin = max(margin, float(size.max()) / MOST_CUBES)
+    low, sizes = low - 2.0 * margin, (size / margin).astype(np.int64) + 5
+
+    def cubes(some: Floats) -> Array:
+        return ((some - low) / margin).astype(np.int64)
+
+    def keys(some: Array) -> Array:
+        return np.ravel_multi_index(tuple(some.T), tuple(sizes))
+
+    around = np.stack(np.meshgrid(*[(-1, 0, 1)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    taken = np.unique(keys(np.unique(cubes(points), axis=0)[:, None] + around).ravel())
+    return np.isin(keys(cubes(places)), taken)
 
 
 def restricted(levels: Levels, points: Floats, margin: float) -> Levels:

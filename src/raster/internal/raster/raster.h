@@ -17,6 +17,9 @@ struct RasterSurface {
     /// The scalar at the three corners of every triangle; NaN: not known there.
     std::vector<std::array<double, 3>> scalar;
     double period = 0.0;  ///< of the scalar, where the surface is closed (a seam); 0: none
+    /// Of the triangles, those on which lines are wanted; empty: all. Where the levels lie is by
+    /// all of them.
+    std::vector<char> wanted;
 };
 
 /// How passes lie beside each other.

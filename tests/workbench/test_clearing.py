@@ -235,7 +235,8 @@ def test_passes_too_near_each_other_to_fill_with_are_left_away(wall):
     )
     asked = []
 
-    def levels_of(step_over):
+    def levels_of(step_over, points, margin):
+        assert points.tolist() == [[10.0, 10.0, 0.0]] and margin == 0.5 * 2.0
         asked.append(step_over)
         if step_over < 0.1:
             core.raster_lines(*square, step_over=1e-7)

@@ -176,3 +176,48 @@ def test_nonsense_is_an_error_that_says_so(settings):
 def test_large_lengths_give_a_path(key):
     laid = raster_path.raster(job_of(plate()), {**X, key: 1e4})
     assert len(laid["passes"]) and np.isfinite(laid["frames"]).all()
+
+
+@pytest.mark.parametrize("margin", [1e-9, 0.3, 5.0])
+def test_what_may_lie_beside_points_is_all_that_does_and_little_else(margin):
+    by = np.random.default_rng(3)
+    places, points = by.uniform(-20.0, 20.0, (4000, 3)), by.uniform(-5.0, 5.0, (40, 3))
+    places[0] = points[0]
+    apart = np.linalg.norm(places[:, None] - points, axis=2).min(axis=1)
+    taken = region.beside(places, points, margin)
+    assert (
+        taken[apart <= margin].all() and not taken[apart > 2.0 * 3.0**0.5 * margin + 1e-3].any()
+    )
+
+
+def test_lines_about_some_points_are_those_of_all_there():
+    """Where levels lie does not depend on where lines are wanted; they end a triangle or so farther out."""
+    x, y = np.meshgrid(np.arange(0.0, 41.0), np.arange(0.0, 31.0))
+    points = np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)])
+    corner = (np.arange(30)[:, None] * 41 + np.arange(40)).ravel()
+    triangles = np.vstack(
+        [
+            np.column_stack([corner, corner + 1, corner + 42]),
+            np.column_stack([corner, corner + 42, corner + 41]),
+        ]
+    )
+    surface = {
+        "name": "",
+        "points": points,
+        "normals": np.tile([0.0, 0.0, 1.0], (len(points), 1)),
+        "triangles": triangles,
+        "scalars": points[triangles][:, :, 1],
+        "period": 0.0,
+    }
+    wanted = np.array([[10.0, 15.0, 0.0]])
+    settings = raster_path.validate(X)
+    laid = [surface], settings, 1.0, 1.0, 0.0, [], None
+    all_, some = raster_path._lines(*laid), raster_path._lines(*laid, (wanted, 3.0))
+    assert 0 < sum(map(len, some)) < sum(map(len, all_))
+    cut = [region.restricted(levels, wanted, 3.0) for levels in (all_, some)]
+    ends = [
+        [[one["points"][0], one["points"][-1]] for level in levels for one in level]
+        for levels in cut
+    ]
+    assert ends[0] and np.shape(ends[0]) == np.shape(ends[1])
+    assert np.abs(np.subtract(*ends)).max() < 3.0 * region.FINE  # as finely as is looked at

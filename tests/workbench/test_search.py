@@ -202,6 +202,12 @@ def tried(machine=None, shares=None, gentler=(0.0, 1.0), levels=9, **wanted):
     )
 
 
+@pytest.mark.parametrize("spacing, glances", [(1.2, False), (0.2, True)])
+def test_a_glance_is_taken_where_a_rough_plan_has_more_samples(spacing, glances):
+    job = job_of(trough(length=200.0), spacing=spacing)
+    assert rough.glances(job, raster_path.validate({})) is glances
+
+
 def test_moves_answer_to_what_stays_out():
     def names(one, fixed=()):
         return sorted(move[0] for _, move in moves.Moves(fixed)(one) if move[0] != "near")

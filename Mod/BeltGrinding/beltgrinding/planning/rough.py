@@ -17,7 +17,7 @@ from ..job.settings import BeltMachine
 from ..job.typed import typed
 from ..job.workpiece import read_design
 from ..programs.program import Program
-from ..raster import raster_path
+from ..raster import raster_path, reach_map
 from ..raster.proposal import FORCE_LEAST
 from ..simulation import run as runs
 from . import reasons, rounds
@@ -50,6 +50,7 @@ class Roughly(NamedTuple):
 ROUGHLY = Roughly(16_000, 3)  # one round says too little where the force is far off
 FEWEST_SAMPLES = 3_000
 GLANCE = Roughly(FEWEST_SAMPLES, 1)  # tells which of many are worth a rough plan
+MUCH_COARSER = 1.3  # mm between its samples to those of a rough plan, or it takes as long
 
 
 class Tried(NamedTuple):
@@ -260,11 +261,9 @@ def _sampled(job: Json, **values: float) -> Json:
 def _coarser(job: Json, area: float, samples: int) -> Json:
     """The job in the coarse mode, with at most ``samples``, about; small faces keep enough of them."""
     job = evenly(job)
-    read = typed(job)
-    sampling, contact = read.sampling, read.belt_machine.contact_spacing_mm
+    sampling = typed(job).sampling
     own = sampling.spacing_mm
-    least, most = math.sqrt(area / samples), math.sqrt(area / FEWEST_SAMPLES)
-    factor = max(min(resolution.SAMPLES * contact, most), least, own) / own
+    factor = spacing(job, area, samples) / own
     coarse = _sampled(
         job,
         spacing_mm=factor * own,
@@ -272,6 +271,23 @@ def _coarser(job: Json, area: float, samples: int) -> Json:
         precision_mm=factor**2 * sampling.precision_mm,
     )
     return resolution.sooner(coarse)
+
+
+def spacing(job: Json, area: float, samples: int) -> float:
+    """mm between samples of rough plans of a job with a spacing, on faces of ``area`` mm2."""
+    read = typed(job)
+    least, most = math.sqrt(area / samples), math.sqrt(area / FEWEST_SAMPLES)
+    by_contact = min(resolution.SAMPLES * read.belt_machine.contact_spacing_mm, most)
+    return max(by_contact, least, read.sampling.spacing_mm)
+
+
+def glances(data: Json, wanted: Json) -> bool:
+    """Whether a glance at passes takes much less time than a rough plan: it has fewer samples. A validated job with a spacing."""
+    job = typed(data)
+    shape = read_design(job.design)
+    area = sum(shape.face_area(face) for face in reach_map.faces_of(job, shape, wanted))
+    glance, roughly = (spacing(data, area, how.samples) for how in (GLANCE, ROUGHLY))
+    return glance > MUCH_COARSER * roughly
 
 
 def _seen(

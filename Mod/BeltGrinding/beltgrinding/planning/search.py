@@ -274,7 +274,7 @@ class _Run:
 
     def _coarse(self, start: Move, queue: Sequence[Move]) -> tuple[Tried | None, list[Tried]]:
         """(a rough plan of the start, if it can be laid; of candidates, the best first)."""
-        few = len(queue) <= LEADERS
+        few = len(queue) <= LEADERS or not rough.glances(self.data, self.first)
         how = rough.ROUGHLY if few else rough.GLANCE
         until = self._until(COARSE_UNTIL if few else GLANCES_UNTIL)
         calls = [self._call(tasks.begun, until, start, self.settings, self.zones)]

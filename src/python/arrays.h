@@ -112,6 +112,7 @@ Frame frame_from(const Eigen::Matrix4d& matrix, const std::string& name,
                  const std::optional<Fact>& context = std::nullopt);
 
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Bools = py::array_t<bool, py::array::c_style | py::array::forcecast>;
 
 /// Rigid transforms from an array (n, 4, 4); messages number them from 1.
 std::vector<Frame> poses_from(const Doubles& frames);

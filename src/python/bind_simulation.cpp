@@ -81,7 +81,6 @@ py::dict to_dict(const SimulationResult& result) {
     return d;
 }
 
-using Bools = py::array_t<bool, py::array::c_style | py::array::forcecast>;
 using Ints = py::array_t<int, py::array::c_style | py::array::forcecast>;
 
 TimeLaw time_law_from(const py::dict& given) {

@@ -55,9 +55,9 @@ py::dict raster(const Doubles& points, const Doubles& normals, const Indices& tr
                 const Doubles& scalars, double period, double step_over, const std::string& spacing,
                 double weld, double split_turn, double smoothing, double chord_error,
                 double max_distance, double max_turn, double lever, const RunContext* given,
-                const py::array_t<bool>& wanted) {
+                const Bools& wanted) {
     RasterSurface surface = surface_from(points, normals, triangles, scalars, period);
-    for (const auto one : wanted) surface.wanted.push_back(one.cast<bool>() ? 1 : 0);
+    surface.wanted.assign(wanted.data(), wanted.data() + wanted.size());
     RasterOptions options;
     options.step_over = step_over;
     if (spacing == "even") {
@@ -104,7 +104,7 @@ void bind_toolpath(py::module_& m) {
           py::arg("spacing") = "lines", py::arg("weld") = 0.0, py::arg("split_turn") = 0.7,
           py::arg("smoothing") = 0.0, py::arg("chord_error") = 0.02, py::arg("max_distance") = 10.0,
           py::arg("max_turn") = 0.1, py::arg("lever") = 0.0, py::arg("context") = nullptr,
-          py::arg("wanted") = py::array_t<bool>(),
+          py::arg("wanted") = Bools(),
           "Passes on a triangulated surface: level lines of a scalar that is given at the three "
           "corners of every triangle. points, normals (n, 3), triangles, scalars (m, 3); lengths "
           "in mm, angles in rad; wanted: (m,) bool, of the triangles those on which lines are, "

@@ -106,8 +106,6 @@ py::object to_dict(const std::optional<WavinessFigures>& figures) {
     return d;
 }
 
-using Bools = py::array_t<bool, py::array::c_style | py::array::forcecast>;
-
 }  // namespace
 
 void bind_verdict(py::module_& m) {

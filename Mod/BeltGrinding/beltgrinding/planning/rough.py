@@ -50,7 +50,7 @@ class Roughly(NamedTuple):
 ROUGHLY = Roughly(16_000, 3)  # one round says too little where the force is far off
 FEWEST_SAMPLES = 3_000
 GLANCE = Roughly(FEWEST_SAMPLES, 1)  # tells which of many are worth a rough plan
-MUCH_COARSER = 1.3  # mm between its samples to those of a rough plan, or it takes as long
+MUCH_COARSER = 1.3  # times a rough plan's spacing; a glance that has less takes as long
 
 
 class Tried(NamedTuple):
@@ -282,10 +282,8 @@ def spacing(job: Json, area: float, samples: int) -> float:
 
 
 def glances(data: Json, wanted: Json) -> bool:
-    """Whether a glance at passes takes much less time than a rough plan: it has fewer samples. A validated job with a spacing."""
-    job = typed(data)
-    shape = read_design(job.design)
-    area = sum(shape.face_area(face) for face in reach_map.faces_of(job, shape, wanted))
+    """Whether a glance at passes of a validated job takes much less time than a rough plan: it has fewer samples."""
+    area = reach_map.area_of(data, wanted)
     glance, roughly = (spacing(data, area, how.samples) for how in (GLANCE, ROUGHLY))
     return glance > MUCH_COARSER * roughly
 

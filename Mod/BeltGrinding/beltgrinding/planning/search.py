@@ -20,7 +20,6 @@ from ..base.crew import Answer, Call, Crew, End
 from ..base.kinds import Context, Json, known
 from ..engine import InputError, core
 from ..job.typed import typed
-from ..job.workpiece import read_design
 from ..raster import reach_map
 from . import by_rules, rough, tasks
 from .candidates import Seen, candidates, further_groups, of_further
@@ -106,12 +105,10 @@ def find(
 
 def _bytes(data: Json, first: Json) -> float:
     """What a process needs, about."""
-    job = typed(data)
-    if not job.sampling.spacing_mm:
+    spacing = typed(data).sampling.spacing_mm
+    if not spacing:
         return PROCESS_BYTES
-    shape = read_design(job.design)
-    area = sum(shape.face_area(face) for face in reach_map.faces_of(job, shape, first))
-    return PROCESS_BYTES + SAMPLE_BYTES * area / job.sampling.spacing_mm**2
+    return PROCESS_BYTES + SAMPLE_BYTES * reach_map.area_of(data, first) / spacing**2
 
 
 class _Run:

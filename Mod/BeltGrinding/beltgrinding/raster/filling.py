@@ -38,7 +38,8 @@ def more(
     """Levels, each of one piece, to lay besides.
 
     ``levels_of(step_over, points, margin)``: passes at that distance, where they are within ``margin`` mm of points
-    (n, 3), as ``clearing.cleared`` takes them; ``seen``: of ``reachable.look``; ``step_over``: mm, of the passes that lie; ``extents``: as there.
+    (n, 3), as ``clearing.cleared`` takes them; ``seen``: of ``reachable.look``; ``step_over``: mm, of the passes that
+    lie; ``extents``: as there.
     """
     left = (seen["state"] == reachable.NO_PASS) & (seen["counted"] > 0)
     enough = LEAST * seen["counted"][seen["fits"]].sum()

@@ -364,10 +364,12 @@ def _finer(area: float, step_over: float) -> float:
 
 
 def _beside(surface: Json, points: Floats, margin: float) -> Array:
-    """(triangles,) bool: those that have a place within ``margin`` mm of one of the points, and some more."""
+    """(triangles,) bool: those on which ``region.restricted`` may keep a pass, and some more: it keeps what is within
+    ``margin`` mm of one of the points, and gaps shorter than that, whose middle is half as much farther off.
+    """
     corners = surface["points"][surface["triangles"]]
     edges = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
-    near = region.beside(surface["points"], points, margin + float(edges.max()))
+    near = region.beside(surface["points"], points, 1.5 * margin + float(edges.max(initial=0.0)))
     return near[surface["triangles"]].any(axis=1)
 
 

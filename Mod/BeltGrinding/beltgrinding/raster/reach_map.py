@@ -46,6 +46,13 @@ def faces_of(job: Job, shape: core.Shape, settings: Json) -> list[int]:
     return sorted({face - 1 for face in wanted if face <= shape.face_count})
 
 
+def area_of(job: Job | Json, settings: Json) -> float:
+    """mm2 of the faces of a validated job that are ground."""
+    job = typed(job)
+    shape = read_design(job.design)
+    return float(sum(shape.face_area(face) for face in faces_of(job, shape, settings)))
+
+
 def ways(job: Job | Json, settings: Json, context: Context = None) -> list[dict[str, Any]]:
     """The ways that passes may go on the faces of a validated job: as ``direction.candidates``, and along and across the
     direction in which the faces are bent most."""
